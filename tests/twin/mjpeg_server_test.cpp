@@ -71,6 +71,55 @@ TEST_CASE("Clients that go away are forgotten and do not end the server") {
   CHECK(client.Until("/stream.mjpg").starts_with("HTTP/1.1 404"));
 }
 
+TEST_CASE("The stream is one answer of parts, each with its type, its length and its picture") {
+  MjpegServer server(0);
+  CHECK(server.Url() ==
+        "http://127.0.0.1:" + std::to_string(PortOf(server.Url())) + "/stream.mjpg");
+  MjpegClient client(PortOf(server.Url()));
+  client.Ask("/stream.mjpg");
+  WaitForClients(server, 1);
+  server.Publish(Picture("[first]"));
+  CHECK(client.Until("[first]\r\n") ==
+        "HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\n"
+        "Cache-Control: no-store\r\nConnection: close\r\n\r\n"
+        "--frame\r\nContent-Type: image/jpeg\r\nContent-Length: 7\r\n\r\n[first]\r\n");
+  server.Publish(Picture("[second]", 3));
+  CHECK(client.Until("[second]\r\n") ==
+        "--frame\r\nContent-Type: image/jpeg\r\nContent-Length: 11\r\n\r\nxxx[second]\r\n");
+}
+
+TEST_CASE("Of another path than the stream's the client is told where that is, and gets none") {
+  for (const char* other : {"/", "/stream.mjpg2", "/stream.mjp", "/a/stream.mjpg"}) {
+    MjpegServer server(0);
+    MjpegClient client(PortOf(server.Url())), watcher(PortOf(server.Url()));
+    client.Ask(other);
+    CHECK(client.Until("mjpg\n") ==
+          "HTTP/1.1 404 Not Found\r\nContent-Type: text/plain\r\nConnection: close\r\n\r\n"
+          "the stream is /stream.mjpg\n");
+    watcher.Ask("/stream.mjpg");
+    WaitForClients(server, 1);
+    server.Publish(Picture("[one]"));
+    CHECK(watcher.Until("[one]\r\n").ends_with("[one]\r\n"));
+    CHECK(server.Clients() == 1);
+    CHECK(client.Until("[one]").empty());  // its connection was closed
+  }
+}
+
+TEST_CASE("What a client says while it watches is passed over") {
+  MjpegServer server(0);
+  MjpegClient client(PortOf(server.Url()));
+  client.Ask("/stream.mjpg");
+  WaitForClients(server, 1);
+  for (const std::string name : {"[1]", "[2]", "[3]"}) {
+    client.Ask("/other");
+    server.Publish(Picture(name));
+    const std::string got = client.Until(name + "\r\n");
+    CHECK(got.ends_with(name + "\r\n"));
+    CHECK(got.find("404") == std::string::npos);
+  }
+  CHECK(server.Clients() == 1);
+}
+
 /// Leaves this process as many descriptors as it has open, and `more`.
 class FewDescriptors {
  public:
@@ -113,7 +162,11 @@ TEST_CASE("A server out of descriptors waits for one instead of spinning, and th
 
 TEST_CASE("A port that is taken is refused in one line") {
   MjpegServer server(0);
-  CHECK_THROWS_WITH(MjpegServer(PortOf(server.Url())), Catch::Contains("twin.http_port"));
+  const int port = PortOf(server.Url());
+  CHECK_THROWS_WITH(MjpegServer(port),
+                    "cannot serve pictures on 127.0.0.1:" + std::to_string(port) +
+                        ": Address already in use; set twin.http_port to another, or to 0 for a "
+                        "free one");
 }
 
 }  // namespace

@@ -64,6 +64,30 @@ TEST_CASE("The camera sees the task with ten centimetres to spare on every side"
   });
 }
 
+TEST_CASE("The twin's camera has the lens of about the authors' webcam, and says so in its file") {
+  const std::vector<control::Waypoint> task{{"a", 0.0, 0.0}, {"b", 0.3, 0.1}};
+  const vision::CameraModel camera = OverheadCamera(task, {});
+  CHECK(camera.name == "twin");
+  Eigen::Matrix3d k;
+  k << 1092.0, 0.0, 958.0, 0.0, 1092.0, 543.0, 0.0, 0.0, 1.0;
+  CHECK(camera.k == k);
+  CHECK(std::vector<double>(camera.distortion.begin(), camera.distortion.end()) ==
+        std::vector<double>{0.06, -0.09, 0.001, -0.001, 0.02});
+  REQUIRE(camera.world);
+  CHECK(camera.world->origin == "as built");
+  // What lies ahead in x is to the right of the picture, and in y above its middle.
+  const Eigen::Matrix3d turn = camera.world->world_from_camera.linear();
+  CHECK((turn.col(0) - Eigen::Vector3d::UnitX()).norm() < 1e-12);
+  CHECK((turn.col(1) + Eigen::Vector3d::UnitY()).norm() < 1e-12);
+  CHECK((turn.col(2) + Eigen::Vector3d::UnitZ()).norm() < 1e-12);
+  TwinOptions low;
+  low.camera_height_m = 0.25;
+  // 0.3 m and 0.1 m with 0.1 m around: 0.25 m of 960 px, and 0.15 m of 540 px, at 1092 px.
+  CHECK_THROWS_WITH(OverheadCamera(task, low),
+                    "twin.camera_height_m is 0.25, but to see the whole path and 0.1 m around them "
+                    "the camera must hang at 0.31 m");
+}
+
 TEST_CASE("A picture is held back from the middle of its exposure for what the host does not do") {
   simulation::MocapOptions mocap;
   mocap.exposure_s = 0.01;
@@ -213,6 +237,41 @@ TEST_CASE("A faster left wheel turns the twin right and has the more counts, and
     CHECK((robot.Truth().yaw_rad < -0.1) == side.IsFirst());
     CHECK((robot.Truth().yaw_rad > 0.1) != side.IsFirst());
   });
+}
+
+TEST_CASE("The twin shows each step of its physics once, with the power at the motors then") {
+  TwinRobot robot(AsTwin({}, {}), 5.0, {}, 1);
+  std::vector<double> times_s;
+  const auto see = [&](const simulation::TruePose& pose, const control::WheelPower& power) {
+    times_s.push_back(pose.t_s);
+    CHECK(power == control::WheelPower{});
+  };
+  robot.Advance(0.1, see);
+  CHECK(robot.Now_s() == Approx(0.1).margin(1e-12));
+  robot.Advance(0.1009, see);  // less than a turn of its loop
+  CHECK(robot.Now_s() == Approx(0.1).margin(1e-12));
+  robot.Advance(0.2, see);
+  CHECK(robot.Now_s() == Approx(0.2).margin(1e-12));
+  REQUIRE(times_s.size() == 50);  // of 4 ms
+  for (size_t i = 0; i < times_s.size(); ++i) {
+    CHECK(times_s[i] == Approx(0.004 * static_cast<double>(i + 1)));
+  }
+  CHECK(robot.Transmit(0.2).empty());  // it was told nothing
+}
+
+TEST_CASE("What the twin is told and what it says both take the way of its radio") {
+  simulation::SimulationOptions options = AsTwin({}, {});
+  options.link.delay_s = 0.05;
+  options.link.baud = 10'000.0;  // a millisecond a byte
+  TwinRobot robot(options, 4.321, {}, 1);
+  const hardware::CommandBytes zero = hardware::Encode(hardware::CommandFrame{5, {}});
+  robot.Receive(0.1, zero);
+  robot.Advance(0.5, [](const auto&, const auto&) {});
+  // 0.05 s and 11 bytes there, a turn of the loop, 0.05 s and 15 bytes back.
+  CHECK(robot.Transmit(0.1 + 0.05 + 0.011 + 0.05 + 0.014 - 0.0005).size() < 15);
+  const auto rest = robot.Transmit(0.1 + 0.05 + 0.011 + 0.05 + 0.015 + 0.0025);
+  CHECK_FALSE(rest.empty());
+  CHECK(robot.Transmit(1.0).empty());
 }
 
 TEST_CASE("A byte's line time follows the baud rate, and a line waits for the one before") {
