@@ -181,9 +181,30 @@ TEST_CASE("A grid that is no grid to drive is refused with its name and why") {
   CHECK_THROWS_WITH(PlanGrid(experiment, "/out"),
                     "paper: only goal: grid has a table of settings to drive");
   experiment = test::PaperTask();
-  experiment.space.parameters = {{.key = "control.note", .levels = {{".hidden", {}}}}};
+  experiment.candidate.kind = experiment::CandidateKind::kLogs;
+  CHECK_THROWS_WITH(
+      PlanGrid(experiment, "/out"),
+      "paper: candidate.kind is logs, and a grid is driven to be held against the simulator");
+  experiment = test::PaperTask();
+  experiment.space.parameters = {{.key = "simulation.motor.lag_s",
+                                  .levels = {experiment::NumberValue(0.1)},
+                                  .origin = "task.yaml:7"}};
   CHECK_THROWS_WITH(PlanGrid(experiment, "/out"),
-                    Contains("is no folder name") || Contains("control.note"));
+                    "task.yaml:7: simulation.motor.lag_s changes the simulator and no robot: of "
+                    "simulation, a grid that is driven may vary terrain.surface alone");
+  experiment.space.parameters = {
+      {.key = "control.v_max", .levels = {experiment::NumberValue(0.3)}}};
+  experiment.reference.trials.names = {"a/b"};
+  CHECK_THROWS_WITH(PlanGrid(experiment, "/out"),
+                    "'v_max0.3_a/b' is no folder name: name the trials and levels without '/' and "
+                    "a leading '.'");
+  auto& surfaces = experiment.simulation.terrain.surfaces;
+  surfaces[".dark"] = surfaces.at("ground");
+  experiment.space.parameters = {{.key = "simulation.terrain.surface", .levels = {{".dark", {}}}}};
+  experiment.reference.trials.names = {"1"};
+  CHECK_THROWS_WITH(PlanGrid(experiment, "/out"),
+                    "'.dark_1' is no folder name: name the trials and levels without '/' and a "
+                    "leading '.'");
 }
 
 /// A person who answers with one key.

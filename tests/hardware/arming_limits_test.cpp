@@ -136,6 +136,45 @@ TEST_CASE("A stop that nothing confirms is waited for a second, and zeros go on 
   CHECK(bench.listener->Motors().IsZero());
 }
 
+TEST_CASE("A camera that may be too late for all that is known is told with what to do") {
+  Bench bench;
+  bench.camera_late_s = 0.35;
+  DriveTask task = PaperTask();
+  task.hardware.line.protocol = Protocol::kPlain;
+  task.hardware.plain.watchdog = Watchdog::kRobot;
+  task.hardware.evidence.max_latency_s = 0.26;
+  std::vector<std::string> told;
+  std::string why;
+  try {
+    Drive({.line = bench,
+           .poses = bench,
+           .clock = bench,
+           .stoppers = {},
+           .say = [&](const std::string& line) { told.push_back(line); },
+           .may_arm = [] { return true; },
+           .threads = false},
+          task);
+  } catch (const std::runtime_error& error) {
+    why = error.what();
+  }
+  const std::string before = "the camera's pictures may be ";
+  REQUIRE_THAT(why, Catch::StartsWith(before));
+  const double most_s = std::stod(why.substr(before.size()));
+  CHECK(why ==
+        fmt::format("the camera's pictures may be {:.3f} s late (the loop delay less what the line "
+                    "takes; this robot tells its wheels too seldom, or not at all, to know more "
+                    "by), and the budget (hardware.evidence.max_latency_s) is 0.260 s: ask it for "
+                    "fewer pixels or a shorter exposure, read it without a server between, have a "
+                    "3pi+ run src/firmware at its line's full speed, or raise the budget by what "
+                    "the robot itself is known to take",
+                    most_s));
+  // The lag of the picture, of the line's 0.02 s and 10 bytes, and of the motors.
+  CHECK(most_s == Approx(0.35 + 0.09).margin(0.05));
+  CHECK(std::find(told.begin(), told.end(),
+                  "the robot turns a few degrees to and fro, to see how late the camera is") !=
+        told.end());
+}
+
 TEST_CASE("A stop may be confirmed within a second of it, and later it counts no more") {
   for (const auto& [silent_s, is_confirmed] : {std::pair{0.6, true}, {1.1, false}}) {
     Bench bench;

@@ -65,9 +65,11 @@ TEST_CASE("A turn to the other side than commanded is refused with what to swap"
     bench.camera_late_s = late_s;
     HardwareOptions hardware;
     hardware.plain.format = "{right:.2f} {left:.2f}\n";
-    CHECK_THROWS_WITH(TurnOn(bench, hardware, Protocol::kPlain),
-                      Catch::Contains("steered to the left, the robot turned to the right: swap "
-                                      "{left} and {right} in hardware.plain.format"));
+    CHECK_THROWS_WITH(
+        TurnOn(bench, hardware, Protocol::kPlain),
+        "steered to the left, the robot turned to the right: swap {left} and {right} in "
+        "hardware.plain.format, or the plugs of its motors (motors that both run backwards and a "
+        "mirrored picture show the same)");
   }
 }
 
@@ -76,8 +78,11 @@ TEST_CASE("A picture that turns against wheels that obey is called mirrored") {
   bench.bend = [](trial::PoseMeasurement& pose) {
     pose.world_from_robot.yaw_rad = -pose.world_from_robot.yaw_rad;
   };
-  CHECK_THROWS_WITH(TurnOn(bench, {}, Protocol::kFramed),
-                    Catch::Contains("the picture is mirrored"));
+  CHECK_THROWS_WITH(
+      TurnOn(bench, {}, Protocol::kFramed),
+      "steered to the left, the wheels turned the robot to the left by their encoders and the "
+      "picture shows it turning to the right: the picture is mirrored, or left and right are "
+      "swapped at both the motors and the encoders");
 }
 
 TEST_CASE("Encoders that answer rarely and late time nothing but the sum of the delays") {

@@ -1,7 +1,13 @@
 #include "rift/hardware/arming.hpp"
 
+#include <termios.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "keyboard.hpp"
 
@@ -87,6 +93,61 @@ TEST_CASE("The keys that hold and release a terminal's output stop a robot as an
     keyboard.Type(key);
     CHECK(person.Stopper()().value().second == "a key was pressed");
   }
+}
+
+TEST_CASE("What is asked before the start is told once, and either end of a line answers it") {
+  for (const char enter : {'\n', '\r'}) {
+    Keyboard keyboard;
+    Operator person(false);
+    Listening listening;
+    for (int i = 0; i < 3; ++i) CHECK_FALSE(person.MayArm(listening.say));
+    CHECK(listening.told ==
+          std::vector<std::string>{
+              "hands off? Enter starts the robot, then any key stops it (before: q gives up)"});
+    keyboard.Type(enter);
+    CHECK_FALSE(person.Stopper()());
+    CHECK(person.MayArm(listening.say));
+    CHECK_FALSE(person.Stopper()());
+    keyboard.Type(enter);
+    const auto stop = person.Stopper()();
+    REQUIRE(stop);
+    CHECK(*stop == std::pair(StopReason::kOperator, std::string("a key was pressed")));
+  }
+}
+
+TEST_CASE("A signal and a closed window stop a robot before any key, each for its own reason") {
+  Keyboard keyboard;
+  Operator person(true);
+  person.CloseWindow();
+  keyboard.Type('a');
+  CHECK(*person.Stopper()() ==
+        std::pair(StopReason::kOperator, std::string("the window was closed")));
+  std::raise(SIGTERM);
+  CHECK(*person.Stopper()() == std::pair(StopReason::kSignal, std::string("SIGTERM came")));
+}
+
+TEST_CASE("Keys come at once and unseen while a robot is driven, and the terminal is as before") {
+  const Keyboard keyboard;
+  const auto settings = [] {
+    termios now{};
+    REQUIRE(::tcgetattr(STDIN_FILENO, &now) == 0);
+    return now;
+  };
+  const termios before = settings();
+  REQUIRE((before.c_lflag & (ICANON | ECHO | ISIG)) == (ICANON | ECHO | ISIG));
+  {
+    const Operator person(true);
+    const termios now = settings();
+    CHECK((now.c_lflag & (ICANON | ECHO)) == 0);
+    CHECK((now.c_lflag & ISIG) != 0);  // Ctrl-C is a signal
+    CHECK((now.c_iflag & IXON) == 0);
+    CHECK(now.c_cc[VMIN] == 0);
+    CHECK(now.c_cc[VTIME] == 0);
+  }
+  const termios after = settings();
+  CHECK(after.c_lflag == before.c_lflag);
+  CHECK(after.c_iflag == before.c_iflag);
+  CHECK(after.c_cc[VMIN] == before.c_cc[VMIN]);
 }
 
 TEST_CASE("A terminal that goes away stops the robot, whoever said yes") {

@@ -88,9 +88,11 @@ TEST_CASE("A wheel that hangs over the edge of a table rests on its corner") {
   const auto contact = WheelContactPoint(terrain, {1.0 + beyond_m, 0.0, low_m - 1e-4},
                                          Vector3d::UnitY(), kRadius_m, 0.0);
   REQUIRE(contact);
-  CHECK(contact->normal.x() == Approx(beyond_m / kRadius_m).epsilon(0.02));
-  CHECK(contact->normal.z() == Approx(low_m / kRadius_m).epsilon(0.02));
-  CHECK(contact->depth_m == Approx(1e-4 * low_m / kRadius_m).margin(1e-5));
+  // The edge is found to a micrometre.
+  const double away_m = std::hypot(beyond_m, low_m - 1e-4);
+  CHECK(std::abs(contact->normal.x() - beyond_m / away_m) < 5e-5);
+  CHECK(std::abs(contact->normal.z() - (low_m - 1e-4) / away_m) < 5e-5);
+  CHECK(std::abs(contact->depth_m - (kRadius_m - away_m)) < 1e-6);
   CHECK_FALSE(WheelContactPoint(terrain, {1.0 + beyond_m, 0.0, low_m + 1e-4}, Vector3d::UnitY(),
                                 kRadius_m, 0.0));
 }

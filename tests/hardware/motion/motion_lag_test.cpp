@@ -73,8 +73,7 @@ TEST_CASE("A lag is told only where it leaves less than a quarter of the squared
   constexpr double kAmplitude_rad = 0.3;
   // To and fro by n makes 2 n of the seven pictures' difference: its square is a quarter of all
   // where it is a third of what the lag explains.
-  const double third_rad =
-      LateError_m(kAmplitude_rad) / std::sqrt(3.0) / (0.5 * kTrack_m) / 2.0;
+  const double third_rad = LateError_m(kAmplitude_rad) / std::sqrt(3.0) / (0.5 * kTrack_m) / 2.0;
   CHECK(Turning(kAmplitude_rad, 0.0, 6.0, 1.06 * third_rad).reason == kNone);
   CHECK(Turning(kAmplitude_rad, 0.0, 6.0, 0.94 * third_rad).reason == StopReason::kPoseLags);
 }
