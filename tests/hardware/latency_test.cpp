@@ -136,6 +136,17 @@ TEST_CASE("A picture later than the search goes is no delay of 1.2 s") {
                         Catch::Contains("hardware.turn.power is 0.08"));
 }
 
+TEST_CASE("A picture that turns before it is commanded to has no lag behind the commands") {
+  Bench bench;
+  bench.from_robot_is_cut = true;
+  bench.bend = [](trial::PoseMeasurement& pose) { pose.captured_s -= 0.15; };
+  HardwareOptions hardware = Patient();
+  hardware.guard.pose_stale_s = 1.0;
+  CHECK_THROWS_WITH(TurnOn(bench, hardware, Protocol::kPlain),
+                    Catch::Contains("and not how long after the commands within 1.2 s (the best "
+                                    "fit is 0.000 s late and "));
+}
+
 TEST_CASE("A picture that turns at times of its own has no lag behind the commands") {
   for (const double period_s : {0.7, 1.1}) {
     Bench bench;

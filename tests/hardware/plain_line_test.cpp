@@ -65,6 +65,12 @@ TEST_CASE("No rounding of a command makes it more than was asked for") {
   CHECK(PlainLine({-0.08, 0.08}, {.format = "{left:.1f}0 {right:.1f}0\n"}) == "-0.00 0.00\n");
 }
 
+TEST_CASE("What a format must round down is still as near as its last digit") {
+  const PlainOptions fine{.format = "{left:.5f} {right:.5f}\n"};
+  CHECK(PlainLine({2.0 / 3.0, -2.0 / 3.0}, fine) == "0.66666 -0.66666\n");
+  CHECK(PlainLine({1.0 / 3.0, -1.0 / 6.0}, fine) == "0.33333 -0.16666\n");
+}
+
 TEST_CASE("A format that cannot command both wheels is refused with the rule it breaks") {
   const auto refusal = [](const std::string& format, std::vector<double> range = {-1.0, 1.0}) {
     try {

@@ -136,6 +136,47 @@ TEST_CASE("A robot that is let go is sent zeros for 0.3 s, or until it has confi
   }
 }
 
+TEST_CASE("A stop is acknowledged by no answer to a zero that was sent before it") {
+  for (int i = 0; i < 10; ++i) {
+    Bench bench;
+    bench.counts_are_stuck = true;  // nothing is to be waited for but the answer
+    HardwareOptions hardware;
+    hardware.evidence.pushed_m = hardware.evidence.agree_m = 10.0;
+    RealRobot robot(bench, bench, bench, {hardware, Protocol::kFramed, false});
+    Settle(robot, bench);
+    robot.Arm();
+    DriveOn(robot, {0.2, 0.2}, 0.3, bench);
+    DriveOn(robot, {}, 0.3, bench);
+    bench.Wait(0.005 * i);
+    const double stopped_s = bench.Now_s();
+    robot.Stop();
+    robot.ConfirmStop(1.0);
+    CHECK(robot.Record().stop_acknowledged == true);
+    // Twice the radio and the bytes of one command and its answer.
+    CHECK(bench.Now_s() - stopped_s > 2 * 0.02 + (11 + 15) * 10.0 / 9600.0 - 0.002);
+  }
+}
+
+/// Its camera may lose all it knew.
+class Forgetful : public Bench {
+ public:
+  bool has_forgotten = false;
+  PoseNews Newest() override { return has_forgotten ? PoseNews{} : Bench::Newest(); }
+};
+
+TEST_CASE("Where a robot was last seen is known once it is stopped, and not before its start") {
+  for (const bool is_stopped : {true, false}) {
+    Forgetful bench;
+    RealRobot robot(bench, bench, bench, {{}, Protocol::kFramed, false});
+    Settle(robot, bench);
+    REQUIRE(robot.Sense().pose);
+    if (is_stopped) robot.Stop();
+    bench.has_forgotten = true;
+    Settle(robot, bench);
+    CHECK(robot.Sense().pose.has_value() == is_stopped);
+  }
+}
+
 TEST_CASE("A machine may be suspended for as long as its limit each time, and no longer") {
   double suspended_s = 1000.0;
   const Stopper stopper = SuspendStopper(0.25, [&suspended_s] { return suspended_s; });

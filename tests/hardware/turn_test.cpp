@@ -213,6 +213,32 @@ TEST_CASE("A turn takes its pulses, half a second and a little more after each, 
   CHECK(turn_s() == Approx(0.02 + 14 * (0.06 + 0.5) + 0.95 + 0.7).margin(0.05));
 }
 
+TEST_CASE("How far apart encoders are read is told by nine in ten, not by the usual two") {
+  Bench bench;
+  int commands = 0;
+  bench.lose_command = [&commands] { return ++commands % 4 == 0; };
+  bench.bend = [](trial::PoseMeasurement& pose) { pose.captured_s -= 0.095; };
+  HardwareOptions hardware = Lenient();
+  hardware.guard.pose_stale_s = hardware.guard.link_lag_s = 1.0;
+  const std::string why = Refusal(bench, hardware);
+  // Two in four are read some 0.035 s apart, one twice as far.
+  CHECK(NumberAfter("nine in ten are read within ", why) > 55.0);
+}
+
+TEST_CASE("Pulses of a few degrees tell how long the robot takes as well") {
+  Bench bench;
+  HardwareOptions hardware;
+  hardware.turn.power = 0.04;
+  hardware.turn.enough_deg = 1.0;
+  const Turned turned = TurnOn(bench, hardware);
+  REQUIRE(turned.found);
+  CHECK(turned.found->turned_deg > 1.0);
+  CHECK(turned.found->turned_deg < 5.7);  // a tenth of a radian
+  REQUIRE(turned.found->delay.robot_s);
+  // The line and its bytes, less what the link is told to take, and the motors.
+  CHECK(*turned.found->delay.robot_s == Approx(0.02 + 0.012 - kOneWay_s + 0.05).margin(0.025));
+}
+
 TEST_CASE("A picture that is far ahead of the wheels is told to be by all that is looked for") {
   Bench bench;
   bench.bend = [](trial::PoseMeasurement& pose) { pose.captured_s -= 0.15; };

@@ -218,6 +218,29 @@ TEST_CASE("Held pictures are found when way and missing pictures are both beyond
         "come, and the limit is 0.25 s: something between camera and rift holds pictures back");
 }
 
+TEST_CASE("On a curve it is the longer one of way and turn that the pose may fall behind in") {
+  for (const bool is_turn : {false, true}) {
+    for (const double sign : {1.0, -1.0}) {
+      BacklogCheck check = After(0.052);
+      const auto longer = is_turn ? &Step::turn_m : &Step::forward_m;
+      const auto shorter = is_turn ? &Step::forward_m : &Step::turn_m;
+      BacklogCheck::Motion motion{.elapsed_s = 0.1};
+      motion.rolled.*longer = sign * 0.05;
+      motion.seen.*longer = sign * 0.02;
+      motion.rolled.*shorter = motion.seen.*shorter = 0.01;
+      for (int i = 0; i < 5; ++i) CHECK_FALSE(check.Check(motion, true, true));
+      const auto found = check.Check(motion, true, true);
+      REQUIRE(found);
+      CHECK_THAT(*found, Catch::StartsWith("the pose fell 0.180 m behind the wheels within 0.6 s"));
+      // Of the shorter one it may.
+      BacklogCheck other = After(0.052);
+      motion.seen.*longer = motion.rolled.*longer;
+      motion.seen.*shorter = 0.004;
+      for (int i = 0; i < 30; ++i) CHECK_FALSE(other.Check(motion, true, true));
+    }
+  }
+}
+
 TEST_CASE("Without missing pictures only the forward way beyond the slip's share is too much") {
   for (const double sign : {1.0, -1.0}) {
     const auto found = [&](const Kind& kind, bool is_turn = false) {
