@@ -83,8 +83,8 @@ TEST_CASE("A wheel that hangs over the edge of a table rests on its corner") {
   TerrainOptions options;
   options.table_half_size_m = 1.0;
   const Terrain terrain(options);
-  // 1 cm beyond the edge of x, at a height at which the corner is just inside of the disc.
-  const double beyond_m = 0.01, low_m = std::sqrt(kRadius_m * kRadius_m - beyond_m * beyond_m);
+  // Nearly 1 cm beyond the edge of x, at a height at which the corner is just inside of the disc.
+  const double beyond_m = 0.0097, low_m = std::sqrt(kRadius_m * kRadius_m - beyond_m * beyond_m);
   const auto contact = WheelContactPoint(terrain, {1.0 + beyond_m, 0.0, low_m - 1e-4},
                                          Vector3d::UnitY(), kRadius_m, 0.0);
   REQUIRE(contact);

@@ -96,8 +96,8 @@ TEST_CASE("On ground that is no plane a robot starts where and as it is asked to
     const OdeWorld world(body, terrain, {0.03, -0.02, heading_rad}, 0.004);
     const Eigen::Vector3d at = world.State().position_m;
     INFO(heading_rad << " " << at.transpose());
-    CHECK((at.head<2>() - Eigen::Vector2d(0.03, -0.02)).norm() < 2e-4);
-    CHECK(std::abs(Yaw(world.State()) - heading_rad) < 2e-3);
+    CHECK((at.head<2>() - Eigen::Vector2d(0.03, -0.02)).norm() < 1e-4);
+    CHECK(std::abs(Yaw(world.State()) - heading_rad) < 1e-3);
     // The axle stands a radius off the ground, along the ground's normal.
     const Eigen::Vector3d foot(at.x(), at.y(), terrain.HeightAt(at.x(), at.y()));
     CHECK(terrain.NormalAt(at.x(), at.y()).dot(at - foot) ==
