@@ -10,6 +10,7 @@ namespace {
 constexpr std::uint64_t kStream = 0x500;
 constexpr std::size_t kPerAxis = 4;
 constexpr std::size_t kLeast = 12;
+constexpr std::size_t kKnownPart = 8;  // one in so many
 /// Share of the members that count as the best ones.
 constexpr double kElite = 0.2;
 /// Weight of a generation in the rates (JADE's c).
@@ -24,14 +25,15 @@ DifferentialEvolution::DifferentialEvolution(const Known& known, std::uint64_t s
       random_(seed, kStream),
       size_(std::max(kLeast, kPerAxis * static_cast<std::size_t>(known.space.Size()))) {}
 
-/// Half of the first members are the best that is known, so that nothing is paid for twice.
+/// Of the first members one in eight is the best that is known; the others keep the population
+/// wide.
 void DifferentialEvolution::Begin() {
   const bool is_first = members_.empty();
   members_.clear();
   target_ = 0;
   mean_step_ = mean_crossover_ = 0.5;
   if (is_first) {
-    for (const std::size_t i : known_.archive.Best(size_ / 2)) {
+    for (const std::size_t i : known_.archive.Best(size_ / kKnownPart)) {
       const Evaluation& evaluation = known_.archive[i];
       members_.push_back({known_.space.ToUnit(evaluation.point), evaluation.loss});
     }

@@ -17,7 +17,10 @@ constexpr double kCornerShare = 0.125;
 /// of the points after the design while they do not: less where every axis is continuous, since
 /// there a run of the local model from another start is worth more than points alone.
 constexpr double kAnywhereGaining = 0.15;
-constexpr double kAnywhereStuck = 0.45, kAnywhereStuckMixed = 0.6;
+constexpr double kAnywhereStuck = 0.3, kAnywhereStuckMixed = 0.6;
+/// Share of the evaluations from so many on that are of differential evolution at least, where
+/// every axis is continuous: among many minima its population is slow to pay, and ahead in the end.
+constexpr double kEvolutionShare = 0.4, kEvolutionFrom = 500.0;
 /// Evaluations after which the surrogate proposes no more: its model keeps its size while the
 /// others sharpen.
 constexpr int kSurrogateMost = 600;
@@ -84,6 +87,9 @@ Portfolio::Member Portfolio::Choose() const {
   const auto evaluations = static_cast<double>(known_.archive.Size());
   if (IsDesign()) return corner_points_ < kCornerShare * evaluations ? kCorners : kSobol;
   if (anywhere_points_ < DueAnywhere(evaluations)) return kSobol;
+  const bool is_evolution_due =
+      is_continuous_ && evolution_points_ < kEvolutionShare * (evaluations - kEvolutionFrom);
+  if (is_evolution_due) return kEvolution;
   double all_spent = 1.0;
   for (const Member member : kLearners) all_spent += records_[member].spent;
   Member choice = kCmaEs;
@@ -153,6 +159,7 @@ void Portfolio::Tell(std::span<const Evaluation> batch) {
   anywhere_points_ +=
       static_cast<double>(active_ == kSobol ? batch.size() : batch.size() - own.size());
   if (active_ == kSobol) return;
+  if (active_ == kEvolution) evolution_points_ += static_cast<double>(own.size());
   NoteProgress(own);
   const double spent = static_cast<double>(own.size()) / kBatch;
   for (Record& record : records_) {

@@ -61,7 +61,7 @@ class Portfolio : public Strategy {
   const Known& known_;
   bool is_continuous_;  ///< every axis
   int design_;          ///< evaluations
-  double anywhere_points_ = 0.0, corner_points_ = 0.0;
+  double anywhere_points_ = 0.0, corner_points_ = 0.0, evolution_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;
   QuadraticFit* fit_ = nullptr;  ///< the member of that name
   std::array<Record, kMembers> records_;

@@ -20,7 +20,8 @@ double WidthOf(const std::vector<Member>& members) {
   return high->place - low->place;
 }
 
-TEST_CASE("An evolution whose members are within a millionth of an axis begins anew, and no other") {
+TEST_CASE(
+    "An evolution whose members are within a millionth of an axis begins anew, and no other") {
   constexpr size_t kMembers = 12;
   int restarts = 0, nearly = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {

@@ -36,7 +36,11 @@ TEST_CASE(
 }
 
 TEST_CASE("A loss that is a quadratic form is solved as soon as there are points to fit one to") {
-  CHECK(Successes("ellipsoid", search::Method::kPortfolio, 24, 802.0, 40) >= 23);
+  CHECK(Successes("ellipsoid", search::Method::kPortfolio, 24, 802.0, 32) >= 23);
+}
+
+TEST_CASE("Among 101 minima a long search finds the one in half of the cases") {
+  CHECK(Successes("peaks", search::Method::kPortfolio, 16, 0.258, 2000) >= 8);
 }
 
 TEST_CASE("Where nothing points to a failure the portfolio finds half as many as random search") {
