@@ -65,8 +65,9 @@ TEST_CASE("The simulated robot drives and answers and weaves like the real one o
   gap::GapOptions gap;
   gap.skip_start = 0.1;
   std::mt19937_64 generator(1);
-  const sweep::DriveLikeness found = sweep::MeasureDriveLikeness(
-      test::DriveGrid(study, trials, 6), true, gap, {.shuffles = 99}, generator);
+  const sweep::DriveLikeness found =
+      sweep::MeasureDriveLikeness(test::DriveGrid(study, trials, 6), true, gap,
+                                  {.shuffles = 99, .longest_run = 1.3}, generator);
   const gap::Likeness& path = found.path;
   INFO("gap " << path.mean_gap_m << " m, mean path " << path.mean_path_gap_m << " m, delay "
               << found.loop_delay_s.sim << " s, missed " << found.failed_runs << ", told apart "
