@@ -13,6 +13,11 @@ constexpr int kDesignLeast = 8;
 constexpr int kDesignPerAxis = 2;
 constexpr double kDesignShare = 0.25;
 constexpr double kCornerShare = 0.125;
+/// Where an axis is a category or whole, corners go on after the design: this share of so many
+/// first evaluations. Ranges end where somebody expects trouble, and no model leads from one
+/// category to the corners of another.
+constexpr double kCornerShareMixed = 0.4, kCornersUntil = 300.0;
+constexpr int kCornersAtOnce = 8;
 /// Share of all points that lie anywhere while the learners gain, those of the design counted, and
 /// of the points after the design while they do not: less where every axis is continuous, since
 /// there a run of the local model from another start is worth more than points alone.
@@ -86,6 +91,8 @@ bool Portfolio::MayPropose(Member member) const {
 Portfolio::Member Portfolio::Choose() const {
   const auto evaluations = static_cast<double>(known_.archive.Size());
   if (IsDesign()) return corner_points_ < kCornerShare * evaluations ? kCorners : kSobol;
+  const double corners_due = kCornerShareMixed * std::min(evaluations, kCornersUntil);
+  if (!is_continuous_ && corner_points_ < corners_due) return kCorners;
   if (anywhere_points_ < DueAnywhere(evaluations)) return kSobol;
   const bool is_evolution_due =
       is_continuous_ && evolution_points_ < kEvolutionShare * (evaluations - kEvolutionFrom);
@@ -111,7 +118,9 @@ Portfolio::Member Portfolio::Choose() const {
 std::vector<Point> Portfolio::Ask(int most) {
   active_ = !IsDesign() && fit_->IsDue() ? kFit : Choose();
   best_before_ = known_.archive.BestLoss();
-  std::vector<Point> points = members_[active_]->Ask(most);
+  const bool is_corner_batch = active_ == kCorners && !IsDesign();
+  std::vector<Point> points =
+      members_[active_]->Ask(is_corner_batch ? std::min(most, kCornersAtOnce) : most);
   proposed_ = points.size();
   if (active_ == kSobol || active_ == kCorners) return points;
   // A member that asks for few points leaves room for those that are due anywhere.

@@ -43,6 +43,27 @@ TEST_CASE("Among 101 minima a long search finds the one in half of the cases") {
   CHECK(Successes("peaks", search::Method::kPortfolio, 16, 0.258, 2000) >= 8);
 }
 
+TEST_CASE(
+    "A failure in one corner of one category is found in as many evaluations as tell corners") {
+  // 5 categories of 16 corners: 80, and 0.4 of 300 evaluations are corners.
+  using enum search::AxisKind;
+  const Task task{.name = "one corner",
+                  .axes = {{"kind", kCategorical, 0.0, 4.0},
+                           {"a", kContinuous, -1.0, 3.0},
+                           {"b", kContinuous, 0.0, 10.0},
+                           {"c", kContinuous, 5.0, 6.0},
+                           {"d", kContinuous, 0.0, 1.0}},
+                  .loss = [](const search::Point& x) {
+                    const bool fails =
+                        x[0] == 3.0 && x[1] > 2.9 && x[2] < 0.1 && x[3] > 5.99 && x[4] > 0.99;
+                    return fails ? -1.0 : 1.0;
+                  }};
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const RunResult run = RunUntil(task, search::Method::kPortfolio, 300, 0.0, seed);
+    CHECK(run.reached_at.value_or(1000) <= 300);
+  }
+}
+
 TEST_CASE("Where nothing points to a failure the portfolio finds half as many as random search") {
   for (const char* name : {"deceiving", "flat"}) {
     INFO(name);
