@@ -60,6 +60,7 @@ Portfolio::Portfolio(const Known& known, const SearchOptions& options, int budge
                      std::uint64_t seed)
     : known_(known),
       is_continuous_(known.space.DiscreteAxes().empty()),
+      corners_(known.space.Corners()),
       design_(std::min(kDesignLeast + kDesignPerAxis * known.space.Size(),
                        static_cast<int>(kDesignShare * budget))) {
   members_[kSobol] = std::make_unique<SobolSampler>(known.space, seed);
@@ -91,7 +92,8 @@ bool Portfolio::MayPropose(Member member) const {
 Portfolio::Member Portfolio::Choose() const {
   const auto evaluations = static_cast<double>(known_.archive.Size());
   if (IsDesign()) return corner_points_ < kCornerShare * evaluations ? kCorners : kSobol;
-  const double corners_due = kCornerShareMixed * std::min(evaluations, kCornersUntil);
+  const double corners_due =
+      std::min(kCornerShareMixed * std::min(evaluations, kCornersUntil), corners_);
   if (!is_continuous_ && corner_points_ < corners_due) return kCorners;
   if (anywhere_points_ < DueAnywhere(evaluations)) return kSobol;
   const bool is_evolution_due =

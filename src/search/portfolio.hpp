@@ -60,6 +60,7 @@ class Portfolio : public Strategy {
 
   const Known& known_;
   bool is_continuous_;  ///< every axis
+  double corners_;      ///< that there are
   int design_;          ///< evaluations
   double anywhere_points_ = 0.0, corner_points_ = 0.0, evolution_points_ = 0.0;
   std::array<std::unique_ptr<Strategy>, kMembers> members_;

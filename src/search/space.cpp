@@ -53,6 +53,15 @@ Space::Space(std::vector<Axis> axes) : axes_(std::move(axes)) {
   points_ = Count(levels_);
 }
 
+double Space::Corners() const {
+  double corners = 1.0;
+  for (int axis = 0; axis < Size(); ++axis) {
+    const bool is_one_value = axes_[axis].min == axes_[axis].max;
+    corners *= IsCategorical(axis) ? levels_[axis] : is_one_value ? 1.0 : 2.0;
+  }
+  return corners;
+}
+
 Point Space::FromUnit(const Eigen::VectorXd& unit) const {
   Point point(axes_.size());
   for (int i = 0; i < Size(); ++i) {

@@ -19,6 +19,8 @@ class Space {
   int Size() const { return static_cast<int>(axes_.size()); }
   bool IsCategorical(int axis) const { return axes_[axis].kind == AxisKind::kCategorical; }
   bool IsContinuous(int axis) const { return levels_[axis] == 0.0; }
+  /// Combinations of the bounds of every axis with each value of the categorical ones.
+  double Corners() const;
   const std::vector<int>& ContinuousAxes() const { return continuous_; }
   const std::vector<int>& DiscreteAxes() const { return discrete_; }
   /// How many values the axis has; 0 for any.

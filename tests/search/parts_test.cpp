@@ -111,6 +111,15 @@ int CellsHit(const std::vector<Eigen::VectorXd>& points, const Place& place) {
   return static_cast<int>(cells.size());
 }
 
+TEST_CASE("Corners are the bounds of every axis with each category, of a fixed one its value") {
+  const Axis range{"a", AxisKind::kContinuous, -1.0, 2.0}, whole{"n", AxisKind::kInteger, 3, 9},
+      words{"w", AxisKind::kCategorical, 0, 4}, fixed{"f", AxisKind::kContinuous, 2.5, 2.5};
+  CHECK(Space({range}).Corners() == 2.0);
+  CHECK(Space({words}).Corners() == 5.0);
+  CHECK(Space({fixed}).Corners() == 1.0);
+  CHECK(Space({range, whole, words, fixed}).Corners() == 20.0);
+}
+
 TEST_CASE("Scrambled Sobol points keep the net: one in each interval and each elementary box") {
   for (const std::uint64_t seed : {1, 2, 3}) {
     SobolSequence sequence(3, seed);
