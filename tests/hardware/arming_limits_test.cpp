@@ -120,14 +120,10 @@ TEST_CASE("A stop that nothing confirms is waited for a second, and zeros go on 
     bench.from_robot_is_cut = true;
     return std::pair(StopReason::kSignal, "SIGTERM came");
   };
-  const DriveRun run = Drive({.line = bench,
-                              .poses = bench,
-                              .clock = bench,
-                              .stoppers = {stopper},
-                              .say = [](const std::string&) {},
-                              .may_arm = [] { return true; },
-                              .threads = false},
-                             task);
+  BenchOperator person;
+  DriveParts parts = person.PartsOf(bench);
+  parts.stoppers = {stopper};
+  const DriveRun run = Drive(parts, task);
   CHECK(run.has_begun);
   CHECK(run.trial.reason == "SIGTERM came");
   CHECK(run.evidence.stop_acknowledged == false);
@@ -143,17 +139,10 @@ TEST_CASE("A camera that may be too late for all that is known is told with what
   task.hardware.line.protocol = Protocol::kPlain;
   task.hardware.plain.watchdog = Watchdog::kRobot;
   task.hardware.evidence.max_latency_s = 0.26;
-  std::vector<std::string> told;
+  BenchOperator person;
   std::string why;
   try {
-    Drive({.line = bench,
-           .poses = bench,
-           .clock = bench,
-           .stoppers = {},
-           .say = [&](const std::string& line) { told.push_back(line); },
-           .may_arm = [] { return true; },
-           .threads = false},
-          task);
+    Drive(person.PartsOf(bench), task);
   } catch (const std::runtime_error& error) {
     why = error.what();
   }
@@ -170,9 +159,9 @@ TEST_CASE("A camera that may be too late for all that is known is told with what
                     most_s));
   // The lag of the picture, of the line's 0.02 s and 10 bytes, and of the motors.
   CHECK(most_s == Approx(0.35 + 0.09).margin(0.05));
-  CHECK(std::find(told.begin(), told.end(),
+  CHECK(std::find(person.told.begin(), person.told.end(),
                   "the robot turns a few degrees to and fro, to see how late the camera is") !=
-        told.end());
+        person.told.end());
 }
 
 TEST_CASE("A stop may be confirmed within a second of it, and later it counts no more") {
@@ -189,14 +178,10 @@ TEST_CASE("A stop may be confirmed within a second of it, and later it counts no
       bench.from_robot_is_cut = bench.Now_s() < *stopped_s + silent_s;
       return std::pair(StopReason::kSignal, "SIGTERM came");
     };
-    const DriveRun run = Drive({.line = bench,
-                                .poses = bench,
-                                .clock = bench,
-                                .stoppers = {stopper},
-                                .say = [](const std::string&) {},
-                                .may_arm = [] { return true; },
-                                .threads = false},
-                               task);
+    BenchOperator person;
+    DriveParts parts = person.PartsOf(bench);
+    parts.stoppers = {stopper};
+    const DriveRun run = Drive(parts, task);
     CHECK(run.has_begun);
     CHECK(run.evidence.stop_acknowledged == is_confirmed);
   }
@@ -205,17 +190,12 @@ TEST_CASE("A stop may be confirmed within a second of it, and later it counts no
 TEST_CASE("A camera that is later in the drive than in the turn is as late as both say together") {
   Bench bench;
   bench.camera_late_s = 0.06;
-  const DriveRun run = Drive({.line = bench,
-                              .poses = bench,
-                              .clock = bench,
-                              .stoppers = {},
-                              .say =
-                                  [&](const std::string& line) {
-                                    if (line.starts_with("loop delay")) bench.camera_late_s = 0.16;
-                                  },
-                              .may_arm = [] { return true; },
-                              .threads = false},
-                             PaperTask());
+  BenchOperator person;
+  DriveParts parts = person.PartsOf(bench);
+  parts.say = [&](const std::string& line) {
+    if (line.starts_with("loop delay")) bench.camera_late_s = 0.16;
+  };
+  const DriveRun run = Drive(parts, PaperTask());
   INFO(run.trial.reason);
   REQUIRE(run.latency);
   CHECK(*run.latency->delay.camera_s == Approx(0.06).margin(0.02));
@@ -228,16 +208,10 @@ TEST_CASE("A camera that is too late is told by how much, beside its budget") {
   bench.camera_late_s = 0.32;
   DriveTask task = PaperTask();
   task.hardware.evidence.max_latency_s = 0.28;
+  BenchOperator person;
   std::string why;
   try {
-    Drive({.line = bench,
-           .poses = bench,
-           .clock = bench,
-           .stoppers = {},
-           .say = [](const std::string&) {},
-           .may_arm = [] { return true; },
-           .threads = false},
-          task);
+    Drive(person.PartsOf(bench), task);
   } catch (const std::runtime_error& error) {
     why = error.what();
   }

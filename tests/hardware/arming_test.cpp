@@ -13,26 +13,10 @@
 namespace rift::hardware {
 namespace {
 
-struct Operator {
-  std::vector<std::string> told;
-  std::optional<std::pair<StopReason, std::string>> stop;
-  bool says_yes = true;
-
-  DriveParts PartsOf(Bench& bench) {
-    return {.line = bench,
-            .poses = bench,
-            .clock = bench,
-            .stoppers = {[this] { return stop; }},
-            .say = [this](const std::string& line) { told.push_back(line); },
-            .may_arm = [this] { return says_yes; },
-            .threads = false};
-  }
-};
-
 TEST_CASE("A link over its budget is not armed and the line says what to change") {
   Bench bench;
   bench.line_delay_s = 0.2;
-  Operator person;
+  BenchOperator person;
   CHECK_THROWS_WITH(Drive(person.PartsOf(bench), PaperTask()),
                     Catch::Contains("not armed, the link breaks its budget: 99 %") &&
                         Catch::Contains("baud rate"));
@@ -41,7 +25,7 @@ TEST_CASE("A link over its budget is not armed and the line says what to change"
 
 TEST_CASE("Nothing moves until the operator says yes") {
   Bench bench;
-  Operator person;
+  BenchOperator person;
   person.says_yes = false;
   DriveParts parts = person.PartsOf(bench);
   int asked = 0;
@@ -59,7 +43,7 @@ TEST_CASE("Nothing moves until the operator says yes") {
 std::vector<std::string> ToldBefore(Bench& bench, DriveTask task, double off_m) {
   task.task.waypoints[0].x_m = bench.Pose().x_m + off_m;
   task.task.waypoints[0].y_m = bench.Pose().y_m;
-  Operator person;
+  BenchOperator person;
   DriveParts parts = person.PartsOf(bench);
   parts.may_arm = [&] {
     person.stop = {StopReason::kOperator, "q was pressed"};
@@ -167,7 +151,7 @@ TEST_CASE("The turn before a drive is never stronger than the guard allows") {
     task.task = control::Program(program, task.hardware.odometry.drive, bench.Pose());
     task.hardware.guard.max_power = most;
     task.hardware.turn.enough_deg = 30.0;  // more than it turns by that
-    Operator person;
+    BenchOperator person;
     const DriveRun run = Drive(person.PartsOf(bench), task);
     INFO(most << ": " << (run.evidence.stop ? run.evidence.stop->text : std::string("no stop")));
     CHECK(run.latency);
@@ -183,7 +167,7 @@ TEST_CASE("What stops a drive before its start is a person's wish, or an error w
   for (const StopReason reason :
        {StopReason::kOperator, StopReason::kSignal, StopReason::kCameraGone}) {
     Bench bench;
-    Operator person;
+    BenchOperator person;
     DriveParts parts = person.PartsOf(bench);
     bench.tag_is_hidden = true;  // it waits for the first pose
     const double begun_s = bench.Now_s();
@@ -205,7 +189,7 @@ TEST_CASE("A camera whose pictures are later than their budget is refused after 
   for (const auto& [late_s, is_taken] : {std::pair{0.2, true}, {0.3, false}}) {
     Bench bench;
     bench.camera_late_s = late_s;
-    Operator person;
+    BenchOperator person;
     DriveTask task = PaperTask();
     task.trial.timeout_s = 1.0;
     if (is_taken) {
@@ -225,7 +209,7 @@ TEST_CASE("A camera that no wheels time is held to its budget with all that it m
   for (const auto& [late_s, is_taken] : {std::pair{0.1, true}, {0.35, false}}) {
     Bench bench;
     bench.camera_late_s = late_s;
-    Operator person;
+    BenchOperator person;
     DriveTask task = PaperTask();
     task.trial.timeout_s = 1.0;
     task.hardware.line.protocol = Protocol::kPlain;
@@ -260,7 +244,7 @@ TEST_CASE("The camera's delay over a whole drive is what was measured and what i
   for (const bool is_measured : {true, false}) {
     Bench bench;
     bench.camera_late_s = 0.1;
-    Operator person;
+    BenchOperator person;
     DriveTask task = PaperTask();
     task.hardware.turn.enabled = is_measured;
     const DriveRun run = Drive(person.PartsOf(bench), task);
@@ -284,7 +268,7 @@ TEST_CASE("The camera's delay over a whole drive is what was measured and what i
 
 TEST_CASE("A dry run goes through the whole trial and no power but zero is ever written") {
   Bench bench;
-  Operator person;
+  BenchOperator person;
   DriveParts parts = person.PartsOf(bench);
   parts.dry_run = true;
   DriveTask task = PaperTask();
@@ -313,7 +297,7 @@ TEST_CASE("A robot that is carried along the waypoints reaches the end of a dry 
         waypoints[from].Position() * (1.0 - share) + waypoints[from + 1].Position() * share;
     pose.world_from_robot = {at.x(), at.y(), 0.0};
   };
-  Operator person;
+  BenchOperator person;
   DriveParts parts = person.PartsOf(bench);
   parts.dry_run = true;
   parts.may_arm = [&] {
@@ -342,7 +326,7 @@ TEST_CASE("A robot that no camera sees is not driven") {
   const auto drive = [](std::function<std::string()> why_unseen) {
     Bench bench;
     bench.tag_is_hidden = true;
-    Operator person;
+    BenchOperator person;
     DriveParts parts = person.PartsOf(bench);
     parts.why_unseen = std::move(why_unseen);
     Drive(parts, PaperTask());
@@ -358,7 +342,7 @@ TEST_CASE("The delay of the camera that the turn finds is taken from the stamps 
   for (const double late_s : {0.0, 0.1}) {
     Bench bench;
     bench.camera_late_s = late_s;
-    Operator person;
+    BenchOperator person;
     const DriveRun run = Drive(person.PartsOf(bench), PaperTask());
     REQUIRE(run.latency);
     REQUIRE(run.latency->delay.camera_s);
@@ -379,7 +363,7 @@ TEST_CASE("A stop during the hello or the ping is obeyed at once") {
   for (const double after_s : {0.05, 0.5, 2.0}) {
     Bench bench;
     bench.from_robot_is_cut = after_s < 0.1;  // a hello that nobody answers
-    Operator person;
+    BenchOperator person;
     DriveParts parts = person.PartsOf(bench);
     const double begun_s = bench.Now_s();
     parts.stoppers.push_back([&]() -> std::optional<std::pair<StopReason, std::string>> {
@@ -396,7 +380,7 @@ TEST_CASE("A stop during the hello or the ping is obeyed at once") {
 
 TEST_CASE("A stop in the middle of a drive is told with its reason") {
   Bench bench;
-  Operator person;
+  BenchOperator person;
   DriveParts parts = person.PartsOf(bench);
   const double begun_s = bench.Now_s();
   parts.stoppers.push_back([&]() -> std::optional<std::pair<StopReason, std::string>> {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <new>
 #include <set>
 #include <sstream>
@@ -32,6 +33,15 @@ JobResult ResultOf(const WorkerPool::Work& work, const RunOptions& options = {})
   return found;
 }
 
+/// A job that leaves an x in `file` whenever it is run, and then does what is to end it.
+WorkerPool::Work Noting(const std::string& file, const std::function<void()>& end) {
+  return [file, end](const std::string&) {
+    std::ofstream(file, std::ios::app) << 'x';
+    end();
+    return std::string();
+  };
+}
+
 TEST_CASE("A job that crashes is tried as often as is allowed, and it is told how often that was") {
   SKIP_UNDER_SANITIZER();
   const auto reason = [](int retries) {
@@ -50,13 +60,8 @@ TEST_CASE("A job that ends its worker with a code, or is killed for ever, is a c
   CHECK(ended.bytes == "ended with exit code 7");
   const test::TemporaryFolder folder;
   const std::string kills = folder / "kills";
-  const JobResult killed = ResultOf(
-      [&](const std::string&) -> std::string {
-        std::ofstream(kills, std::ios::app) << 'x';
-        ::kill(::getpid(), SIGKILL);
-        return "";
-      },
-      {.retries = 0});
+  const JobResult killed =
+      ResultOf(Noting(kills, [] { ::kill(::getpid(), SIGKILL); }), {.retries = 0});
   CHECK(killed.end == JobEnd::kCrashed);
   CHECK(killed.bytes == "ended by signal 9 (Killed)");
   CHECK(test::ReadFile(kills) == "xxxxx");
@@ -175,13 +180,8 @@ TEST_CASE("A pool has a worker at least, and a batch without jobs is done") {
 TEST_CASE("Five kills from outside are the first failure of a job, and each further one the next") {
   const test::TemporaryFolder folder;
   const std::string kills = folder / "kills";
-  const JobResult killed = ResultOf(
-      [&](const std::string&) -> std::string {
-        std::ofstream(kills, std::ios::app) << 'x';
-        ::kill(::getpid(), SIGKILL);
-        return "";
-      },
-      {.retries = 1});
+  const JobResult killed =
+      ResultOf(Noting(kills, [] { ::kill(::getpid(), SIGKILL); }), {.retries = 1});
   CHECK(killed.bytes == "ended by signal 9 (Killed), twice");
   CHECK(test::ReadFile(kills) == "xxxxxx");
 }
@@ -190,13 +190,8 @@ TEST_CASE("A signal of the job itself that is no kill is a failure at once") {
   SKIP_UNDER_SANITIZER();
   const test::TemporaryFolder folder;
   const std::string runs = folder / "runs";
-  const JobResult ended = ResultOf(
-      [&](const std::string&) -> std::string {
-        std::ofstream(runs, std::ios::app) << 'x';
-        ::kill(::getpid(), SIGTERM);
-        return "";
-      },
-      {.retries = 0});
+  const JobResult ended =
+      ResultOf(Noting(runs, [] { ::kill(::getpid(), SIGTERM); }), {.retries = 0});
   CHECK(ended.bytes == "ended by signal 15 (Terminated)");
   CHECK(test::ReadFile(runs) == "x");
 }
@@ -204,13 +199,8 @@ TEST_CASE("A signal of the job itself that is no kill is a failure at once") {
 TEST_CASE("A job that hangs is given up after its time, and tried once where no more is allowed") {
   const test::TemporaryFolder folder;
   const std::string runs = folder / "runs";
-  const JobResult hung = ResultOf(
-      [&](const std::string&) -> std::string {
-        std::ofstream(runs, std::ios::app) << 'x';
-        ::sleep(1000);
-        return "";
-      },
-      {.timeout_s = 0.25, .retries = 0});
+  const JobResult hung =
+      ResultOf(Noting(runs, [] { ::sleep(1000); }), {.timeout_s = 0.25, .retries = 0});
   CHECK(hung.end == JobEnd::kHung);
   CHECK(hung.bytes == "had not ended after 0.25 s (run.timeout_s)");
   CHECK(test::ReadFile(runs) == "x");
