@@ -22,10 +22,12 @@
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "rift/statistics/inference.hpp"
+#include "rift/yaml/enum_name.hpp"
 #include "search/robot_space.hpp"
 #include "search/run_until.hpp"
 #include "search/tasks.hpp"
@@ -47,10 +49,9 @@ struct Request {
 };
 
 Method MethodOf(const std::string& name) {
-  const auto names = EnumNames(Method{});
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw std::invalid_argument(name + ": no such strategy");
-  return static_cast<Method>(found - names.begin());
+  const std::optional<Method> method = yaml::ValueNamed<Method>(name);
+  if (!method) throw std::invalid_argument(name + ": no such strategy");
+  return *method;
 }
 
 void Study(const Request& request, const std::string& name, int budget) {
