@@ -13,7 +13,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "descriptor.hpp"
+#include "cannot_write.hpp"
+#include "rift/files/descriptor.hpp"
 #include "rift/limits/limits.hpp"
 
 namespace rift::files {

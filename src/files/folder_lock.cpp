@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
@@ -16,14 +15,12 @@ namespace rift::files {
 
 namespace {
 
-int Open(const std::filesystem::path& folder) {
-  return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-}
+Descriptor Open(const std::filesystem::path& folder) { return {folder, O_RDONLY | O_DIRECTORY}; }
 
 /// Workers of a sweep that was killed a moment ago may still be dying.
-bool LockWithin(int descriptor, std::chrono::milliseconds patience) {
+bool LockWithin(const Descriptor& folder, std::chrono::milliseconds patience) {
   const auto end = std::chrono::steady_clock::now() + patience;
-  while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+  while (::flock(folder.Number(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) return true;  // a file system without locks
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -48,22 +45,19 @@ FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& a
     throw std::runtime_error(
         fmt::format("cannot make folder {}: {}", folder.string(), error.message()));
   }
-  descriptor_ = Open(folder);
-  if (descriptor_ < 0) {
+  lock_ = Open(folder);
+  if (!lock_.IsOpen()) {
     throw std::runtime_error(
         fmt::format("cannot open folder {}: {}", folder.string(), strerror(errno)));
   }
-  if (LockWithin(descriptor_, std::chrono::seconds(1))) return;
-  ::close(descriptor_);
+  if (LockWithin(lock_, std::chrono::seconds(1))) return;
   throw std::runtime_error(at_work);
 }
-
-FolderLock::~FolderLock() { ::close(descriptor_); }
 
 void FolderLock::RequireInPlace() const {
   struct stat held {};
   struct stat named {};
-  const bool is_there = ::fstat(descriptor_, &held) == 0 && ::stat(folder_.c_str(), &named) == 0;
+  const bool is_there = ::fstat(lock_.Number(), &held) == 0 && ::stat(folder_.c_str(), &named) == 0;
   if (is_there && held.st_dev == named.st_dev && held.st_ino == named.st_ino) return;
   throw std::runtime_error(fmt::format(
       "folder {} was removed, moved or replaced while it was being worked in: what was written "
@@ -72,11 +66,8 @@ void FolderLock::RequireInPlace() const {
 }
 
 bool FolderLock::IsHeld(const std::filesystem::path& folder) {
-  const int descriptor = Open(folder);
-  if (descriptor < 0) return false;
-  const bool is_held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  ::close(descriptor);
-  return is_held;
+  const Descriptor lock = Open(folder);
+  return lock.IsOpen() && ::flock(lock.Number(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
 }  // namespace rift::files

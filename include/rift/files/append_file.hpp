@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "rift/files/descriptor.hpp"
+
 namespace rift::files {
 
 /// A new file that grows. What was appended outlives the process; what was synced, the machine too.
@@ -11,9 +13,6 @@ class AppendFile {
   /// Makes the file. Throws std::runtime_error with the path and the system's reason, also where
   /// there is one of that name.
   explicit AppendFile(std::filesystem::path path);
-  ~AppendFile();
-  AppendFile(const AppendFile&) = delete;
-  AppendFile& operator=(const AppendFile&) = delete;
 
   /// Each throws std::runtime_error with the path and the system's reason. A text that finds no
   /// room stands in the file up to its last whole line.
@@ -24,7 +23,7 @@ class AppendFile {
 
  private:
   std::filesystem::path path_;
-  int descriptor_;
+  Descriptor file_;
 };
 
 }  // namespace rift::files

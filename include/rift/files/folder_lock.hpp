@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "rift/files/descriptor.hpp"
+
 namespace rift::files {
 
 /// Keeps other sweeps and series of drives out of a folder, until the end of its scope or of the
@@ -13,9 +15,6 @@ class FolderLock {
   explicit FolderLock(const std::filesystem::path& folder);
   /// The same, with `at_work` as the words for a folder in which somebody is at work.
   FolderLock(const std::filesystem::path& folder, const std::string& at_work);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
 
   /// Throws std::runtime_error when the folder is no longer where it was: removed, moved, replaced.
   void RequireInPlace() const;
@@ -24,7 +23,7 @@ class FolderLock {
 
  private:
   std::filesystem::path folder_;
-  int descriptor_ = -1;
+  Descriptor lock_;
 };
 
 }  // namespace rift::files

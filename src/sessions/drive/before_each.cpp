@@ -114,28 +114,26 @@ SceneCommand::SceneCommand(const std::vector<std::string>& words) : name_(words.
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw std::runtime_error(fmt::format("no pipe to be had: {}", strerror(errno)));
   }
+  output_ = files::Descriptor(ends[0]);
+  files::Descriptor theirs(ends[1]);
   const pid_t parent = ::getpid();
   pid_ = ::fork();
-  if (pid_ == 0) Become(arguments, ends[1], parent);
-  if (pid_ > 0) ::setpgid(pid_, pid_);  // whichever of the two comes first
-  ::close(ends[1]);
-  output_ = ends[0];
-  if (pid_ < 0) {
-    ::close(output_);
-    throw std::runtime_error(fmt::format("cannot run {}: {}", name_, strerror(errno)));
-  }
+  if (pid_ == 0) Become(arguments, theirs.Number(), parent);
+  if (pid_ < 0) throw std::runtime_error(fmt::format("cannot run {}: {}", name_, strerror(errno)));
+  ::setpgid(pid_, pid_);  // whichever of the two comes first
+  theirs = {};
   try {
-    while (const auto line = ReadLine(output_)) {
+    while (const auto line = ReadLine(output_.Number())) {
       if (!line->starts_with('{')) continue;
       address_ = AddressOf(*line);
-      rest_ = std::jthread(ThrowAway, output_);
+      rest_ = std::jthread(ThrowAway, output_.Number());
       return;
     }
   } catch (...) {
     End();
     throw;
   }
-  ::close(output_);
+  output_ = {};
   const int status = WaitFor(std::exchange(pid_, -1));
   if (status != 0) {
     throw std::runtime_error(fmt::format("--before-each: {} {}", name_, HowItEnded(status)));
@@ -150,7 +148,7 @@ void SceneCommand::End() {
     WaitFor(pid_);
   }
   rest_ = {};  // before its output is closed
-  ::close(output_);
+  output_ = {};
   pid_ = -1;
 }
 

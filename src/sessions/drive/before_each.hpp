@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "rift/files/descriptor.hpp"
 #include "rift/sessions/drive/setup.hpp"
 
 namespace rift::sessions {
@@ -38,7 +39,7 @@ class SceneCommand {
 
   std::string name_;
   pid_t pid_ = -1;
-  int output_ = -1;
+  files::Descriptor output_;
   std::jthread rest_;  ///< reads what is printed after the line
   std::optional<DriveAddress> address_;
 };

@@ -198,17 +198,15 @@ PageServer::PageServer(const std::vector<std::filesystem::path>& files) {
   if (::pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
     throw std::runtime_error(fmt::format("--serve: no pipe: {}", std::strerror(errno)));
   }
+  requests_ = files::Descriptor(pipe[0]);
+  const files::Descriptor theirs(pipe[1]);
   process_ = ::fork();
   if (process_ == 0) {
-    ::close(pipe[0]);
-    Serve(context, acceptor, {.path = path, .files = files, .requests = pipe[1]});
+    requests_ = {};
+    Serve(context, acceptor, {.path = path, .files = files, .requests = theirs.Number()});
   }
-  ::close(pipe[1]);
-  requests_ = pipe[0];
   if (process_ < 0) {
-    const std::string reason = std::strerror(errno);
-    ::close(requests_);
-    throw std::runtime_error(fmt::format("--serve: no process: {}", reason));
+    throw std::runtime_error(fmt::format("--serve: no process: {}", std::strerror(errno)));
   }
 }
 
@@ -216,12 +214,11 @@ PageServer::~PageServer() {
   ::kill(process_, SIGKILL);
   while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
-  ::close(requests_);
 }
 
 void PageServer::NoteRequests() {
   std::array<char, 64> bytes{};
-  for (ssize_t n = 0; (n = ::read(requests_, bytes.data(), bytes.size())) > 0;) {
+  for (ssize_t n = 0; (n = ::read(requests_.Number(), bytes.data(), bytes.size())) > 0;) {
     last_request_s_ = Now_s();
     const std::string_view served(bytes.data(), static_cast<size_t>(n));
     has_served_last_ = has_served_last_ || served.find(kLast) != served.npos;
@@ -237,7 +234,7 @@ bool PageServer::WaitForLast(int timeout_ms) {
   const double end_s = Now_s() + 1e-3 * timeout_ms;
   for (NoteRequests(); !has_served_last_; NoteRequests()) {
     const int left_ms = static_cast<int>(std::ceil(1e3 * (end_s - Now_s())));
-    pollfd entry{requests_, POLLIN, 0};
+    pollfd entry{requests_.Number(), POLLIN, 0};
     const bool has_news = left_ms > 0 && ::poll(&entry, 1, left_ms) > 0;  // else late or a signal
     if (!has_news || (entry.revents & POLLIN) == 0) return false;
   }

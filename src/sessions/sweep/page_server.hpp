@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "rift/files/descriptor.hpp"
+
 namespace rift::sessions {
 
 /// Serves the first of some files that is there under http://127.0.0.1:PORT/TOKEN/, to this machine
@@ -32,7 +34,7 @@ class PageServer {
  private:
   std::string url_;
   pid_t process_ = -1;
-  int requests_ = -1;  ///< the end of a pipe: a byte for each, kLast or kOther
+  files::Descriptor requests_;  ///< the end of a pipe: a byte for each, kLast or kOther
   double last_request_s_ = -1e9;
   bool has_served_last_ = false;
 };

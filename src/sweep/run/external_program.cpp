@@ -39,19 +39,15 @@ constexpr int kNotStarted = 127;
   throw MachineTrouble(fmt::format("cannot start a program: {}", strerror(error)));
 }
 
-/// The two ends of a pipe or a socket, closed unless they are taken.
+/// The two ends of a socket.
 struct Ends {
-  int ours = -1, theirs = -1;
+  files::Descriptor ours, theirs;
 };
 
 Ends SocketPair() {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) CannotStart(errno);
-  return {ends[0], ends[1]};
-}
-
-void CloseIfOpen(int descriptor) {
-  if (descriptor >= 0) ::close(descriptor);
+  return {files::Descriptor(ends[0]), files::Descriptor(ends[1])};
 }
 
 /// Closes all from 3 on but those.
@@ -95,12 +91,9 @@ bool Write(int file, const std::string& text) {
 /// Not made durable: the folder is gone after the trial.
 void WriteInto(const std::string& folder, const std::string& name, const std::string& text) {
   const std::string path = (std::filesystem::path(folder) / name).string();
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
-  const bool is_written = file >= 0 && Write(file, text);
-  const int error = errno;
-  CloseIfOpen(file);
-  if (is_written) return;
-  throw MachineTrouble(fmt::format("cannot write {}: {}", path, strerror(error)));
+  const files::Descriptor file(path, O_WRONLY | O_CREAT, 0600);
+  if (file.IsOpen() && Write(file.Number(), text)) return;
+  throw MachineTrouble(fmt::format("cannot write {}: {}", path, strerror(errno)));
 }
 
 /// What becomes the program.
@@ -178,37 +171,36 @@ void KillDescendants() {
 /// The last bytes of a file, `most` of them; empty where it cannot be read. What a program writes
 /// has no bound, and what it puts in the place of the file may be anything.
 std::string EndOf(const std::string& path, off_t most) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) return "";
+  const files::Descriptor file(path, O_RDONLY | O_NONBLOCK);
+  if (!file.IsOpen()) return "";
   std::string text(static_cast<size_t>(most), '\0');
-  const off_t begin = std::max<off_t>(0, ::lseek(file, 0, SEEK_END) - most);
-  const ssize_t n = ::pread(file, text.data(), text.size(), begin);
-  ::close(file);
+  const off_t begin = std::max<off_t>(0, ::lseek(file.Number(), 0, SEEK_END) - most);
+  const ssize_t n = ::pread(file.Number(), text.data(), text.size(), begin);
   text.resize(n > 0 ? static_cast<size_t>(n) : 0);
   return text;
 }
 
 /// Serves until the caller closes its end: tells it of the program's end.
-[[noreturn]] void Keep(const ProgramStart& start, const std::string& folder, int control, int in,
-                       int out) noexcept {
+[[noreturn]] void Keep(const ProgramStart& start, const std::string& folder, int control,
+                       files::Descriptor in, files::Descriptor out) noexcept {
   ::setsid();
   ::prctl(PR_SET_PDEATHSIG, 0);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
-  CloseAllBut({control, in, out});
+  CloseAllBut({control, in.Number(), out.Number()});
   sigset_t child_signal;
   ::sigemptyset(&child_signal);
   ::sigaddset(&child_signal, SIGCHLD);
   ::sigprocmask(SIG_BLOCK, &child_signal, nullptr);
   const int ends = ::signalfd(-1, &child_signal, SFD_CLOEXEC | SFD_NONBLOCK);
   const pid_t program = ::fork();
-  if (program == 0) Become(start, folder, in, out);
+  if (program == 0) Become(start, folder, in.Number(), out.Number());
   if (program < 0) {
     const int no_process = -errno;  // below every status of a process
     static_cast<void>(::send(control, &no_process, sizeof no_process, MSG_NOSIGNAL));
   }
-  CloseIfOpen(in);
-  CloseIfOpen(out);
+  in = {};
+  out = {};
   bool is_wanted = program > 0;
   while (is_wanted) {
     std::array<pollfd, 2> waiting{{{control, POLLIN, 0}, {ends, POLLIN, 0}}};
@@ -266,23 +258,20 @@ ExternalProgram::ExternalProgram(const ProgramStart& start, std::string folder)
     keeper_ = ::fork();
     if (keeper_ < 0) CannotStart(errno);
   } catch (const MachineTrouble&) {
-    for (const Ends& ends : {control, in, out}) {
-      CloseIfOpen(ends.ours);
-      CloseIfOpen(ends.theirs);
-    }
     std::error_code none;
     std::filesystem::remove_all(folder_, none);
     throw;
   }
-  if (keeper_ == 0) Keep(start, folder_, control.theirs, in.theirs, out.theirs);
-  for (const int theirs : {control.theirs, in.theirs, out.theirs}) CloseIfOpen(theirs);
-  control_ = control.ours;
-  to_program_ = in.ours;
-  from_program_ = out.ours;
+  if (keeper_ == 0) {
+    Keep(start, folder_, control.theirs.Number(), std::move(in.theirs), std::move(out.theirs));
+  }
+  control_ = std::move(control.ours);
+  to_program_ = std::move(in.ours);
+  from_program_ = std::move(out.ours);
 }
 
 ExternalProgram::~ExternalProgram() {
-  for (const int ours : {control_, to_program_, from_program_}) CloseIfOpen(ours);
+  for (files::Descriptor* ours : {&control_, &to_program_, &from_program_}) *ours = {};
   while (keeper_ > 0 && ::waitpid(keeper_, nullptr, 0) < 0 && errno == EINTR) {
   }
 }
@@ -291,7 +280,7 @@ ExternalProgram::Exit ExternalProgram::Wait() {
   int status = 0;
   ssize_t n = 0;
   do {
-    n = ::recv(control_, &status, sizeof status, MSG_WAITALL);
+    n = ::recv(control_.Number(), &status, sizeof status, MSG_WAITALL);
   } while (n < 0 && errno == EINTR);
   if (n != sizeof status) return {0, SIGKILL};  // somebody killed the keeper
   if (status < 0) CannotStart(-status);
@@ -306,7 +295,8 @@ bool ExternalProgram::WasNeverStarted(const Exit& exit, const std::string& last_
 bool ExternalProgram::SendLine(const std::string& line) {
   const std::string bytes = line + '\n';
   for (size_t sent = std::exchange(has_begun_line_, false) ? 1 : 0; sent < bytes.size();) {
-    const ssize_t n = ::send(to_program_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    const ssize_t n =
+        ::send(to_program_.Number(), bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     sent += static_cast<size_t>(n);
@@ -327,10 +317,11 @@ std::optional<std::string> ExternalProgram::ReceiveLine() {
     searched = arrived_.size();
     if (searched > kLongest) return std::exchange(arrived_, "");
     // A child of the program may hold its output open for ever: its end is told by the keeper.
-    std::array<pollfd, 2> waiting{{{from_program_, POLLIN, 0}, {control_, POLLIN, 0}}};
+    std::array<pollfd, 2> waiting{
+        {{from_program_.Number(), POLLIN, 0}, {control_.Number(), POLLIN, 0}}};
     if (::poll(waiting.data(), waiting.size(), -1) < 0) continue;
     std::array<char, 65536> bytes;
-    const ssize_t n = ::recv(from_program_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    const ssize_t n = ::recv(from_program_.Number(), bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0 && errno == EAGAIN && waiting[1].revents == 0) continue;
     if (n <= 0) return std::nullopt;
@@ -342,7 +333,7 @@ void ExternalProgram::TakeArrived() {
   std::array<char, 65536> bytes;
   ssize_t n = 0;
   do {
-    n = ::recv(from_program_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    n = ::recv(from_program_.Number(), bytes.data(), bytes.size(), MSG_DONTWAIT);
   } while (n < 0 && errno == EINTR);
   if (n > 0) arrived_.append(bytes.data(), static_cast<size_t>(n));
 }
@@ -350,14 +341,16 @@ void ExternalProgram::TakeArrived() {
 const std::string& ExternalProgram::UnreadAtNextLine(char first, int most_ms) {
   using Clock = std::chrono::steady_clock;
   constexpr int kQuickLooks = 100;  // some 50 us: most programs read on at once
-  if (!has_begun_line_) has_begun_line_ = ::send(to_program_, &first, 1, MSG_NOSIGNAL) == 1;
+  if (!has_begun_line_)
+    has_begun_line_ = ::send(to_program_.Number(), &first, 1, MSG_NOSIGNAL) == 1;
   const Clock::time_point end = Clock::now() + std::chrono::milliseconds(most_ms);
   for (int look = 0; most_ms < 0 || Clock::now() < end; ++look) {
     int on_its_way = 0;  // bytes, and what they cost
-    const bool is_taken = ::ioctl(to_program_, SIOCOUTQ, &on_its_way) != 0 || on_its_way == 0;
+    const bool is_taken =
+        ::ioctl(to_program_.Number(), SIOCOUTQ, &on_its_way) != 0 || on_its_way == 0;
     TakeArrived();
     if (is_taken || !arrived_.empty()) break;
-    pollfd ended{control_, POLLIN, 0};
+    pollfd ended{control_.Number(), POLLIN, 0};
     if (::poll(&ended, 1, look < kQuickLooks ? 0 : 1) > 0) break;
   }
   return arrived_;

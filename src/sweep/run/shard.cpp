@@ -9,6 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "rift/files/descriptor.hpp"
 #include "rift/statistics/hash.hpp"
 #include "rift/sweep/run/byte_codec.hpp"
 
@@ -25,11 +26,8 @@ const std::string kLayout = "rift shard 2";
 
 /// To the disk, not only to the memory of this machine: the job ends with its node's promise.
 void Sync(const fs::path& path, int flags) {
-  const int file = ::open(path.c_str(), flags | O_CLOEXEC);
-  const bool is_synced = file >= 0 && ::fsync(file) == 0;
-  const int reason = errno;
-  if (file >= 0) ::close(file);
-  if (!is_synced) CannotPublish(path, strerror(reason));
+  const files::Descriptor file(path, flags);
+  if (!file.IsOpen() || ::fsync(file.Number()) != 0) CannotPublish(path, strerror(errno));
 }
 
 /// No other process on any machine makes the same.

@@ -72,9 +72,8 @@ enum MemoryField { kResident = 2, kShared = 3, kData = 6 };
 /// What the process holds already, in bytes.
 rlim_t Held(MemoryField what) {
   std::array<char, 256> text{};
-  const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-  const ssize_t n = file < 0 ? -1 : ::read(file, text.data(), text.size() - 1);
-  if (file >= 0) ::close(file);
+  const files::Descriptor file("/proc/self/statm", O_RDONLY);
+  const ssize_t n = ::read(file.Number(), text.data(), text.size() - 1);
   unsigned long long field = 0;
   const char* at = text.data();
   for (int i = 0; n > 0 && i < what; ++i) {
@@ -148,15 +147,15 @@ std::string Do(const WorkerPool::Work& work, const std::string& job) {
 
 Worker::Worker(const WorkerPool::Work& work, const RunOptions& options) : options_(options) {
   std::array<int, 2> ends{};
-  output_ = ::memfd_create("rift_worker", MFD_CLOEXEC);
-  if (output_ < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+  output_ = files::Descriptor(::memfd_create("rift_worker", MFD_CLOEXEC));
+  if (!output_.IsOpen() || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     CannotStart();
   }
+  socket_ = files::Descriptor(ends[0]);
+  const files::Descriptor theirs(ends[1]);
   const pid_t coordinator = ::getpid();
   pid_ = ::fork();
-  if (pid_ == 0) RunWorker(work, options, ends[1], output_, coordinator);
-  ::close(ends[1]);
-  socket_ = ends[0];
+  if (pid_ == 0) RunWorker(work, options, theirs.Number(), output_.Number(), coordinator);
   if (pid_ < 0) CannotStart();
 }
 
@@ -166,16 +165,14 @@ Worker::~Worker() {
     while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
-  ::close(socket_);
-  ::close(output_);
 }
 
-void Worker::Send(const std::string& job) { SendAll(socket_, Framed(job)); }
+void Worker::Send(const std::string& job) { SendAll(socket_.Number(), Framed(job)); }
 
 bool Worker::Receive() {
   std::array<char, 65536> bytes;
   while (true) {
-    const ssize_t n = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    const ssize_t n = ::recv(socket_.Number(), bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (n == 0) return false;
@@ -201,7 +198,7 @@ std::optional<JobResult> Worker::NextResult() {
 std::string Worker::StartOfOutput() const {
   constexpr size_t kLongest = 200;
   std::string text(kLongest, '\0');
-  const ssize_t n = ::pread(output_, text.data(), text.size(), 0);
+  const ssize_t n = ::pread(output_.Number(), text.data(), text.size(), 0);
   text.resize(n > 0 ? static_cast<size_t>(n) : 0);
   return OneLine(text, kLongest);
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "rift/files/descriptor.hpp"
 #include "rift/sweep/run/options.hpp"
 #include "rift/sweep/run/worker_pool.hpp"
 
@@ -22,7 +23,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  int Descriptor() const { return socket_; }
+  int Descriptor() const { return socket_.Number(); }
   /// A job that cannot be sent shows as the worker's exit.
   void Send(const std::string& job);
   /// Takes in what has arrived. False when the worker has exited.
@@ -43,8 +44,8 @@ class Worker {
 
   RunOptions options_;
   pid_t pid_ = -1;
-  int socket_ = -1;
-  int output_ = -1;  ///< what it wrote to stdout and stderr during the job
+  files::Descriptor socket_;
+  files::Descriptor output_;  ///< what it wrote to stdout and stderr during the job
   std::string arrived_;
 };
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "rift/files/descriptor.hpp"
+
 namespace rift::sweep {
 
 /// How a program that is not rift is started: never by a shell.
@@ -77,9 +79,9 @@ class ExternalProgram {
   std::string folder_;
   pid_t owner_ = -1;
   pid_t keeper_ = -1;
-  int control_ = -1;  ///< to the keeper, which ends when it is closed
-  int to_program_ = -1;
-  int from_program_ = -1;
+  files::Descriptor control_;  ///< to the keeper, which ends when it is closed
+  files::Descriptor to_program_;
+  files::Descriptor from_program_;
   std::string arrived_;
   bool has_begun_line_ = false;
 };
