@@ -108,8 +108,9 @@ void WriteInto(const std::string& folder, const std::string& name, const std::st
     std::signal(signal, SIG_DFL);
   }
   const int no_folder = ::chdir(folder.c_str()) == 0 ? 0 : errno;
-  const int errors = ::open(kErrors, O_WRONLY | O_CREAT | O_APPEND, 0600);
   const int nothing = ::open("/dev/null", O_RDWR);
+  const int errors =
+      no_folder == 0 ? ::open(kErrors, O_WRONLY | O_CREAT | O_APPEND, 0600) : nothing;
   ::dup2(start.talks ? in : nothing, 0);
   ::dup2(start.talks ? out : nothing, 1);
   ::dup2(errors, 2);
