@@ -14,12 +14,14 @@
 #include "search/differential_evolution.hpp"
 #include "search/local_model.hpp"
 #include "search/samplers.hpp"
+#include "search/scalar_cma.hpp"
 #include "search/surrogate.hpp"
 
 namespace rift::search {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kPopulation = 6;  ///< of CMA-ES
 
 const std::vector<Axis> kMixed{{"x", AxisKind::kContinuous, -2.0, 6.0},
                                {"n", AxisKind::kInteger, -1, 2},
@@ -280,56 +282,11 @@ TEST_CASE(
   CHECK(std::set<Point>(points.begin(), points.end()).size() >= 6);
 }
 
-/// Hansen 2016 for one axis, where matrices are numbers.
-struct ScalarCma {
-  double mean, sigma, covariance = 1.0, length = 1.0, path_sigma = 0.0, path_c = 0.0;
-  int generation = 0;
-  static constexpr int kPopulation = 6, kParents = 3;
-  std::vector<double> weights;
-  double mu_eff, c_sigma, d_sigma, c_c, c_1, c_mu, chi;
-
-  ScalarCma(double start, double step) : mean(start), sigma(step) {
-    double sum = 0.0, squares = 0.0;
-    for (int i = 1; i <= kParents; ++i) weights.push_back(std::log(3.5) - std::log(i));
-    for (const double w : weights) sum += w;
-    for (double& w : weights) w /= sum, squares += w * w;
-    mu_eff = 1.0 / squares;
-    c_sigma = (mu_eff + 2.0) / (1.0 + mu_eff + 5.0);
-    d_sigma = 1.0 + 2.0 * std::max(0.0, std::sqrt((mu_eff - 1.0) / 2.0) - 1.0) + c_sigma;
-    c_c = (4.0 + mu_eff) / (5.0 + 2.0 * mu_eff);
-    c_1 = 2.0 / (2.3 * 2.3 + mu_eff);
-    c_mu = std::min(1.0 - c_1, 2.0 * (mu_eff - 2.0 + 1.0 / mu_eff) / (9.0 + mu_eff));
-    chi = 1.0 - 0.25 + 1.0 / 21.0;
-  }
-  void Learn(const std::vector<double>& best_first) {
-    double step = 0.0, moved = 0.0, rank_mu = 0.0;
-    for (size_t i = 0; i < kParents; ++i) {
-      const double y = (best_first[i] - mean) / sigma;
-      step += weights[i] * y;
-      moved += weights[i] * best_first[i];
-      rank_mu += weights[i] * y * y;
-    }
-    mean = moved;
-    path_sigma = (1.0 - c_sigma) * path_sigma +
-                 std::sqrt(c_sigma * (2.0 - c_sigma) * mu_eff) * step / length;
-    const double settled = std::sqrt(1.0 - std::pow(1.0 - c_sigma, 2.0 * (generation + 1)));
-    const bool is_steady = std::abs(path_sigma) / settled < (1.4 + 1.0) * chi;
-    path_c *= 1.0 - c_c;
-    if (is_steady) path_c += std::sqrt(c_c * (2.0 - c_c) * mu_eff) * step;
-    covariance = (1.0 - c_1 - c_mu + (is_steady ? 0.0 : c_1 * c_c * (2.0 - c_c))) * covariance +
-                 c_1 * path_c * path_c + c_mu * rank_mu;
-    sigma *= std::exp(std::min(1.0, c_sigma / d_sigma * (std::abs(path_sigma) / chi - 1.0)));
-    sigma = std::min(sigma, 1.0);
-    if (generation > 0) length = std::sqrt(covariance);  // as often as Hansen's B.2 says
-    ++generation;
-  }
-};
-
 TEST_CASE("On one axis CMA-ES is Hansen's, generation by generation") {
   const Space space({{"a", AxisKind::kContinuous, 0.0, 1.0}});
   statistics::Random random(8, 1), same(8, 1);
-  CmaEs search(space, Unit({0.45}), 0.02, ScalarCma::kPopulation);
-  ScalarCma by_hand(0.45, 0.02);
+  CmaEs search(space, Unit({0.45}), 0.02, kPopulation);
+  ScalarCma by_hand(0.45, 0.02, kPopulation);
   for (int generation = 0; generation < 12; ++generation) {
     INFO("generation " << generation);
     std::vector<double> drawn, losses;
@@ -352,8 +309,8 @@ TEST_CASE("On one axis CMA-ES is Hansen's, generation by generation") {
 TEST_CASE("No spread of CMA-ES is wider than an axis") {
   const Space space({{"a", AxisKind::kContinuous, 0.0, 1.0}});
   statistics::Random random(8, 1), same(8, 1);
-  CmaEs search(space, Unit({0.5}), 2.0, ScalarCma::kPopulation);
-  ScalarCma by_hand(0.5, 2.0);
+  CmaEs search(space, Unit({0.5}), 2.0, kPopulation);
+  ScalarCma by_hand(0.5, 2.0, kPopulation);
   std::vector<double> drawn, losses;
   for (const Eigen::VectorXd& unit : search.Sample(random)) {
     same.Normal();
@@ -464,7 +421,7 @@ TEST_CASE("A run is narrow below 1e-7 of an axis, and flat below 1e-13 of its lo
   // One generation of a slope, and the spread that Hansen's equations leave of the first.
   const auto spread_after = [&](double sigma, bool& is_done) {
     statistics::Random random(8, 1);
-    CmaEs search(space, Unit({0.5}), sigma, ScalarCma::kPopulation);
+    CmaEs search(space, Unit({0.5}), sigma, kPopulation);
     std::vector<double> drawn, losses;
     for (const Eigen::VectorXd& unit : search.Sample(random)) {
       drawn.push_back(unit[0]);
@@ -473,7 +430,7 @@ TEST_CASE("A run is narrow below 1e-7 of an axis, and flat below 1e-13 of its lo
     search.Learn(losses);
     is_done = search.IsDone(kInfinity);
     std::sort(drawn.begin(), drawn.end());
-    ScalarCma by_hand(0.5, sigma);
+    ScalarCma by_hand(0.5, sigma, kPopulation);
     by_hand.Learn(drawn);
     return by_hand.sigma * std::sqrt(by_hand.covariance);
   };
@@ -482,7 +439,7 @@ TEST_CASE("A run is narrow below 1e-7 of an axis, and flat below 1e-13 of its lo
   for (const double share : {0.96, 1.04}) {
     CHECK(spread_after(share * 1e-7 / grows, is_done) == Approx(share * 1e-7).epsilon(1e-4));
     CHECK(is_done == (share < 1.0));
-    CmaEs search(space, Unit({0.5}), 0.1, ScalarCma::kPopulation);
+    CmaEs search(space, Unit({0.5}), 0.1, kPopulation);
     statistics::Random random(8, 1);
     search.Sample(random);
     search.Learn({1000.0, 1000.0, 1000.0, 1000.0, 1000.0, 1000.0 + share * 1e-10});
