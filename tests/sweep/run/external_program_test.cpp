@@ -316,6 +316,34 @@ TEST_CASE("Of an error above a stack the nearest line that names one is told, wi
   CHECK(words("RangeError: far\nlast line") == "last line");
 }
 
+TEST_CASE("Below an error 63 lines of a stack are passed over, and no more") {
+  const auto words = [](int lines) {
+    std::string text = "RangeError: far";
+    for (int i = 0; i < lines; ++i) text += "\n    at f (/x/a.js:1:2)";
+    return WordsOf("cat >&2 <<'END'\n" + text + "\nEND");
+  };
+  CHECK(words(63) == "RangeError: far");
+  CHECK(words(64) == "    at f (/x/a.js:1:2)");
+}
+
+TEST_CASE("Of one line without an end the last 64 KiB are looked at") {
+  CHECK(WordsOf("printf 0123456789 >&2; head -c 65530 /dev/zero | tr '\\0' x >&2") ==
+        "456789" + std::string(194, 'x'));
+}
+
+TEST_CASE("A program whose folder is gone is not started anywhere else") {
+  const test::TemporaryFolder here;
+  const fs::path before = fs::current_path();
+  fs::current_path(here.Path());
+  ExternalProgram program({.arguments = {"sh", "-c", "echo started > told.txt"}},
+                          here / "of_its_own");
+  const ExternalProgram::Exit exit = program.Wait();
+  fs::current_path(before);
+  CHECK(exit.code == 127);
+  CHECK(exit.signal == 0);
+  CHECK_FALSE(fs::exists(here / "told.txt"));
+}
+
 TEST_CASE("A long line comes to a program whole") {
   Shell shell("head -n 1 | wc -c", true);
   CHECK(shell.program.SendLine(std::string(1'000'000, 'a')));

@@ -1,5 +1,7 @@
 #include "rift/sweep/run/shard.hpp"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -133,6 +135,28 @@ TEST_CASE("A published file takes the place of an older one whole, and leaves no
   CHECK_THROWS_WITH(PublishFile(folder / "new", folder / "taken/b.sqlite"),
                     Catch::StartsWith("cannot write " + (folder / "taken/b.sqlite") + ": "));
   CHECK(std::distance(fs::directory_iterator(folder / "taken"), {}) == 1);
+}
+
+TEST_CASE(
+    "What is published stands under a name of this machine and this process until it is whole") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "new", "new bytes");
+  std::string host(256, '\0');
+  REQUIRE(::gethostname(host.data(), host.size() - 1) == 0);
+  const std::string process = std::to_string(::getpid());
+  const auto open_files = [] { return std::distance(fs::directory_iterator("/proc/self/fd"), {}); };
+  const auto before = open_files();
+  // Those of other machines and other processes are no hindrance.
+  fs::create_directories(folder / ("a.sqlite.another." + process + ".new"));
+  fs::create_directories(folder /
+                         (std::string("a.sqlite.") + host.c_str() + ".1" + process + ".new"));
+  PublishFile(folder / "new", folder / "a.sqlite");
+  CHECK(test::ReadFile(folder / "a.sqlite") == "new bytes");
+  CHECK(open_files() == before);
+  fs::create_directories(folder /
+                         (std::string("a.sqlite.") + host.c_str() + "." + process + ".new"));
+  CHECK_THROWS_WITH(PublishFile(folder / "new", folder / "a.sqlite"),
+                    Catch::StartsWith("cannot write " + (folder / "a.sqlite") + ": "));
 }
 
 TEST_CASE("Journals of shards merge into one with the rows of all, whichever comes twice") {

@@ -220,6 +220,31 @@ TEST_CASE("Whoever was stopped leaves the queue alone from then on and complains
   CHECK(SlurmShards::AreOpen(cluster.Out()));  // the same command goes on with it
 }
 
+TEST_CASE("A cluster that took an array is asked again soon when it is busy the next time") {
+  const Cluster cluster;
+  Journal journal = cluster.NewJournal();
+  const Shard first = ShardOf("a"), second = ShardOf("b");
+  cluster.Finishes(first, "a");
+  cluster.Finishes(second, "b");
+  // Busy four times, and once after the first array was taken.
+  cluster.Does("sbatch",
+               "echo x >> \"$D/tried\"\n"
+               "case $(wc -l < \"$D/tried\") in 1|2|3|4|6)\n"
+               "  echo 'over the job limit' >&2; exit 1;; esac\n" +
+                   test::ReadFile(cluster / "sbatch.also"));
+  int looks = 0;
+  SlurmShards::Watch watch;
+  watch.seen = [&](const ShardCounts&) { ++looks; };
+  SlurmOptions options = Quick();
+  options.poll_s = 0.02;
+  SlurmShards slurm(cluster.Out(), options, "", journal, watch);
+  CHECK(slurm.Run({first}));
+  looks = 0;
+  CHECK(slurm.Run({second}));
+  CHECK(looks == 3);  // before it was refused, before it was taken, and when it was done
+  CHECK(journal.Has("b"));
+}
+
 TEST_CASE("Tasks start where the sweep was started, under names that hold from there") {
   const Cluster cluster;
   Journal journal = cluster.NewJournal();
