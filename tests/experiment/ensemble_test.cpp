@@ -5,6 +5,7 @@
 #include <set>
 
 #include "rift/experiment/experiment.hpp"
+#include "rift/statistics/random.hpp"
 #include "rift/yaml/write.hpp"
 
 namespace rift::experiment {
@@ -48,6 +49,16 @@ TEST_CASE("A run takes the values of one draw together, the same for the same se
   }
   REQUIRE(taken.size() == 3);
   for (const auto& [delay_s, times] : taken) CHECK(times > 70);
+}
+
+TEST_CASE("A seed takes the same draw in every version of rift") {
+  const Experiment experiment = LoadTexts({{"robot.yaml", kRobot}});
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::uint64_t taken = statistics::SeedOfStream(seed, 90) % 3;
+    CAPTURE(seed, taken);
+    CHECK(DrawnAt(experiment, seed).simulation.link.delay_s ==
+          Approx(0.08 + 0.02 * static_cast<double>(taken)));
+  }
 }
 
 TEST_CASE("An experiment without an ensemble is the same at every seed") {

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/random.hpp"
@@ -57,6 +59,23 @@ TEST_CASE("The share of the draws within an interval is widened by Student for f
   CHECK(interval(2).high == Approx(500.0 * (1.0 + std::erf(1.0))));
   CHECK(interval(3).low == Approx(500.0 * (1.0 - std::erf(std::sqrt(0.5)))));
   CHECK(interval(3).high == Approx(500.0 * (1.0 + std::erf(std::sqrt(0.5)))));
+}
+
+TEST_CASE("A seed draws the same groups in every version of rift, so often as is asked") {
+  std::vector<std::vector<size_t>> drawn;
+  BootstrapGroups(
+      5,
+      [&drawn](std::span<const size_t> groups) {
+        drawn.emplace_back(groups.begin(), groups.end());
+        return 1.0;
+      },
+      {.resamples = 7}, 3);
+  REQUIRE(drawn.size() == 7);
+  Random random(3, 71);
+  for (const std::vector<size_t>& groups : drawn) {
+    REQUIRE(groups.size() == 5);
+    for (const size_t group : groups) CHECK(group == random.Below(5));
+  }
 }
 
 }  // namespace

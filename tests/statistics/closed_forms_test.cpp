@@ -210,6 +210,17 @@ TEST_CASE("A logistic regression of one feature of two values has a closed form"
   CHECK(w < std::log(2.0));
 }
 
+TEST_CASE("A logistic regression of samples that a value divides ends after fifty steps") {
+  // Without a ridge the weight w has no end: a step of Newton's adds 1 + e^-w.
+  Eigen::MatrixXd features(2, 1);
+  features << 5, 3;
+  const LogisticModel model = FitLogistic(features, Eigen::Vector2d(1.0, 0.0), 0.0);
+  double w = 0.0;
+  for (int step = 0; step < 50; ++step) w += 1.0 + std::exp(-w);
+  CHECK(model.weights[0] == Approx(w).margin(0.01));
+  CHECK(model.intercept == Approx(0.0).margin(0.01));
+}
+
 TEST_CASE("A logistic regression weighs both samples alike and leaves constants out") {
   // Twice as many of the second sample, every value in each: nothing can be told.
   Eigen::MatrixXd features(6, 2);

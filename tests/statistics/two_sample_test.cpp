@@ -63,6 +63,36 @@ TEST_CASE("Labels of groups of two are shuffled as well: samples that lie apart 
   CHECK(test.p <= 0.03);
 }
 
+TEST_CASE("The labels of a seed are shuffled alike in every version of rift, one after the other") {
+  // Each permutation as a test of its own, of the labels of the one before, shuffled in its groups.
+  Random random(11, 1);
+  const std::vector<Observation> observations = Drawn(5, 3, 0.7, random);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const TwoSampleTest test =
+        TestTwoSamples(observations, {.permutations = 30}, {.resamples = 2}, seed);
+    Random shuffles(seed, 72);
+    std::vector<Observation> shuffled = observations;
+    int as_large = 1;
+    for (int permutation = 0; permutation < 30; ++permutation) {
+      for (size_t group = 0; group < 5; ++group) {
+        for (size_t i = 5; i > 1; --i) {
+          const bool last = shuffled[5 * group + i - 1].is_first;
+          const size_t other = 5 * group + shuffles.Below(i);
+          shuffled[5 * group + i - 1].is_first = shuffled[other].is_first;
+          shuffled[other].is_first = last;
+        }
+      }
+      const TwoSampleTest one =
+          TestTwoSamples(shuffled, {.permutations = 0}, {.resamples = 2}, seed);
+      as_large += one.accuracy >= test.accuracy;
+    }
+    CAPTURE(seed, as_large);
+    CHECK(test.p == Approx(as_large / 31.0));
+    CHECK(as_large > 2);
+    CHECK(as_large < 30);
+  }
+}
+
 TEST_CASE("A difference in one feature is found and that feature is named") {
   Random random(2, 1);
   const TwoSampleTest test =
