@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rift/statistics/descriptive.hpp"
+#include "rift/statistics/random.hpp"
 
 namespace rift::sweep {
 namespace {
@@ -109,6 +110,41 @@ TEST_CASE("The same seed gives the same ensemble, another seed another one, none
   CHECK(EnsembleOf(Fit(), kConfidence, 5, 1).draws == EnsembleOf(Fit(), kConfidence, 5, 1).draws);
   CHECK(EnsembleOf(Fit(), kConfidence, 5, 1).draws != EnsembleOf(Fit(), kConfidence, 5, 2).draws);
   CHECK(EnsembleOf(Fit(), kConfidence, 0, 1).IsEmpty());
+}
+
+TEST_CASE("A seed gives the same ensemble in every version of rift") {
+  Calibration fit = Fit();
+  fit.correlation = Eigen::MatrixXd::Identity(3, 3);
+  const statistics::CounterRandom random(7, 91);
+  const double values[] = {3.0, -2.0, 0.5}, deviations[] = {0.1, 0.05, 0.2};
+  const auto expected = [&](size_t row, size_t attempt, size_t k) {
+    return values[k] + deviations[k] * random.Normal(row, 2 * (3 * attempt + k));
+  };
+  const experiment::Ensemble ensemble = EnsembleOf(fit, kConfidence, 4, 7);
+  // Its third draw is the first that is allowed of each row.
+  int asked = 0;
+  const experiment::Ensemble third = EnsembleOf(
+      fit, kConfidence, 4, 7, [&asked](const std::vector<double>&) { return ++asked % 3 == 0; });
+  for (size_t row = 0; row < 4; ++row) {
+    for (size_t k = 0; k < 3; ++k) {
+      CHECK(ensemble.draws[row][k] == Approx(expected(row, 0, k)).epsilon(1e-6));
+      CHECK(third.draws[row][k] == Approx(expected(row, 2, k)).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("A row is drawn a thousand times before the fitted values take its place") {
+  int asked = 0;
+  const auto allowed_at = [&asked](int attempt) {
+    asked = 0;
+    return EnsembleOf(Fit(), kConfidence, 1, 1,
+                      [&asked, attempt](const std::vector<double>&) { return ++asked == attempt; })
+        .draws[0];
+  };
+  const std::vector<double> fitted{3.0, -2.0, 0.5};
+  CHECK(allowed_at(1000) != fitted);
+  CHECK(allowed_at(1001) == fitted);
+  CHECK(asked == 1000);
 }
 
 TEST_CASE("Draws of parameters that do not go together tell nothing of each other") {

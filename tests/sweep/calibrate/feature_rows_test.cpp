@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rift/sweep/calibrate/drive_features.hpp"
+#include "rift/sweep/calibrate/repeated_trial.hpp"
 #include "rift/trial/loop_delay.hpp"
 #include "support/mirror.hpp"
 
@@ -168,6 +169,31 @@ TEST_CASE("A drive on a detour, or one that does not arrive, has failed and tell
   CHECK(at.rows.row(2).array().isNaN().all());
   CHECK_FALSE(at.rows.row(0).array().isNaN().all());
   CHECK_FALSE(IsSame(at.rows.row(0), at.rows.row(3)));  // stamps that are put on frames
+}
+
+TEST_CASE("A drive as long as a log may be is no detour, and one that is longer is") {
+  const TwinAt twin = [](size_t, const std::vector<double>&) {
+    SimulatedTrial one = Turn(0.0);
+    simulation::MocapOptions& mocap = one.simulation.mocap;
+    mocap.noise_across_m = mocap.noise_along_m = mocap.noise_yaw_rad = 0.0;
+    mocap.blur_across_s = mocap.stamp_jitter_s = mocap.blur_yaw_rad_per_mps = 0.0;
+    mocap.rate_hz = mocap.frame_jitter_s = mocap.host_jitter_s = 0.0;
+    one.simulation.link.poll_s = 0.0;
+    return one;
+  };
+  // Nothing is left to chance: the length of any seed is that of the drive.
+  std::vector<double> lengths_m;
+  for (const std::uint64_t seed : {3, 4, 5}) {
+    SimulatedTrial one = twin(0, {});
+    one.seed = seed;
+    lengths_m.push_back(LengthByStrides_m(Simulate(one).result.trajectory));
+  }
+  REQUIRE(lengths_m[0] == lengths_m[1]);
+  REQUIRE(lengths_m[0] == lengths_m[2]);
+  std::vector<CalibrationLog> logs(2);
+  logs[0].longest_m = lengths_m[0];
+  logs[1].longest_m = std::nextafter(lengths_m[0], 0.0);
+  CHECK(DriveAt({{0.0}}, logs, twin, 0, 1, 1)[0].has_failed == Eigen::Vector2d(0.0, 1.0));
 }
 
 }  // namespace

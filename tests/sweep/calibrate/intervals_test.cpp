@@ -188,6 +188,13 @@ TEST_CASE("A prior pulls with its slope in every draw, and its own scatter comes
         Approx(std::sqrt(90.0) / (60.0 + 90.0) * kOneDegree).epsilon(0.03));
 }
 
+TEST_CASE("The interval of a single log is as wide as that of one degree of freedom") {
+  // One log has no scatter of its own: what is left is the prior's.
+  const Prior near{VectorXd::Constant(1, 0.4), VectorXd::Constant(1, 90.0)};
+  CHECK(Half(Judged(Middle(), Scalars({{30.0, 0.2}}), {}, near, 20'000).parameters[0]) ==
+        Approx(std::sqrt(90.0) / (30.0 + 90.0) * kOneDegree).epsilon(0.03));
+}
+
 TEST_CASE("Correlations are of the central draws, of which no outlier has the say") {
   // Three logs; the second parameter is told by the first log alone, and 8 of 27 draws are without.
   Set logs;

@@ -60,5 +60,17 @@ TEST_CASE("A plain model has at most 300 columns, one for each value of a list")
   CHECK(terms(301) == 0);
 }
 
+TEST_CASE("Of losses that do not vary no model predicts any") {
+  SweepResult result;
+  result.parameters = {{.key = "a", .min = 0.0, .max = 1.0}};
+  for (int i = 0; i < 9; ++i) {
+    result.rows.push_back(Row({experiment::NumberValue(0.125 * i)}, 0.25));
+  }
+  const Expansion found =
+      BestExpansion(result, Observe(result, 1000), {.most_terms = 9, .most_degree = 3});
+  CHECK(found.degree == 1);
+  CHECK(found.predicted == -1.0);
+}
+
 }  // namespace
 }  // namespace rift::sweep
