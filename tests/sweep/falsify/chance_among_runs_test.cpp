@@ -77,6 +77,22 @@ TEST_CASE("A search takes no setting for decided by runs that chance among a few
   CHECK_FALSE(later.HasFalsified());
 }
 
+TEST_CASE("What was falsified without chance stays so while no other setting shows any") {
+  const Rows fails{Driven(Failed(0.5, 7), 1), Driven(Failed(0.5, 7), 2)};
+  const Rows noisy{Driven(Ok(0.02, 8), 1, 1), Driven(Ok(0.03, 9), 2, 1)};
+  RepeatPlan plan({}, 500, 0.06);
+  plan.Add({fails});
+  plan.Add({noisy});
+  CHECK(plan.HasFalsified());
+}
+
+TEST_CASE("A passing setting exactly as near to the threshold as is doubtful is tried again") {
+  Rows one{Driven(Ok(0.125), 1)};
+  one[0].falsified = false;
+  CHECK(RepeatPlan({.near_m = 0.125}, 1, 0.25).More({one}).front() > 0);
+  CHECK(RepeatPlan({.near_m = 0.124}, 1, 0.25).More({one}).front() == 0);
+}
+
 TEST_CASE("Settings of a sweep with chance among a few runs are judged by each of their trials") {
   SweepResult result{.parameters = {{"p", {{"0", 0.0}, {"1", 1.0}}}}};
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
