@@ -2,6 +2,7 @@
 #include "simulation/heightfield_options.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -95,6 +96,27 @@ TEST_CASE("A wheel that hangs over the edge of a table rests on its corner") {
   CHECK(std::abs(contact->depth_m - (kRadius_m - away_m)) < 1e-6);
   CHECK_FALSE(WheelContactPoint(terrain, {1.0 + beyond_m, 0.0, low_m + 1e-4}, Vector3d::UnitY(),
                                 kRadius_m, 0.0));
+}
+
+TEST_CASE("The edge of a table is found to a third of a micrometre, and to no less") {
+  TerrainOptions options;
+  options.table_half_size_m = 1.0;
+  const Terrain terrain(options);
+  // A wheel's diameter in 24 parts, each of which is halved twelve times.
+  const double found_m = 2.0 * kRadius_m / 24.0 / 4096.0, height_m = 0.002;
+  double most_m = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    const double beyond_m = 0.014 + 2.3e-5 * i;
+    const auto contact = WheelContactPoint(terrain, {1.0 + beyond_m, 0.0, height_m},
+                                           Vector3d::UnitY(), kRadius_m, 0.0);
+    REQUIRE(contact);
+    const double away_m = kRadius_m - contact->depth_m;
+    const double off_m = std::sqrt(away_m * away_m - height_m * height_m) - beyond_m;
+    CHECK(off_m > -1e-9);
+    most_m = std::max(most_m, off_m);
+  }
+  CHECK(most_m < 1.01 * found_m);
+  CHECK(most_m > 0.8 * found_m);
 }
 
 TEST_CASE("A wide wheel counts the highest ground under its width") {

@@ -16,19 +16,41 @@ namespace {
 
 constexpr double kStep_s = 0.004;
 
-/// Waves of 3 mm, 0.1 m long in x and 0.14 m in y.
-Terrain Waves(double mu) {
-  TerrainOptions options = HeightfieldOptions(1.0, 0.003);
+/// A picture of so many pixels to each side of a square of `width_m`; `share` of its height at x
+/// and y.
+template <class Share>
+Terrain Pictured(double width_m, double height_m, int pixels, double mu, const Share& share) {
+  TerrainOptions options = HeightfieldOptions(width_m, height_m);
   options.surfaces["ground"].mu = mu;
-  constexpr int kPixels = 101;
+  const double pixel_m = width_m / (pixels - 1);
   std::vector<double> samples;
-  for (int row = 0; row < kPixels; ++row) {
-    for (int column = 0; column < kPixels; ++column) {
-      const double x_m = 0.01 * column, y_m = 0.01 * row;
-      samples.push_back(0.5 + 0.25 * std::sin(62.8 * x_m + 0.4) + 0.25 * std::cos(44.9 * y_m));
+  for (int row = 0; row < pixels; ++row) {
+    for (int column = 0; column < pixels; ++column) {
+      samples.push_back(share(pixel_m * column - 0.5 * width_m, 0.5 * width_m - pixel_m * row));
     }
   }
-  return Terrain(options, std::make_shared<HeightImage>(HeightImage{kPixels, kPixels, samples}));
+  return Terrain(options, std::make_shared<HeightImage>(HeightImage{pixels, pixels, samples}));
+}
+
+/// Waves of 3 mm, 0.1 m long in x and 0.14 m in y.
+Terrain Waves(double mu) {
+  return Pictured(1.0, 0.003, 101, mu, [](double x_m, double y_m) {
+    return 0.5 + 0.25 * std::sin(62.8 * (x_m + 0.5) + 0.4) + 0.25 * std::cos(44.9 * (0.5 - y_m));
+  });
+}
+
+/// As long, with a crest near the middle.
+Terrain HighWaves(double height_m) {
+  return Pictured(1.0, height_m, 101, 0.8, [](double x_m, double y_m) {
+    return 0.5 + 0.25 * std::sin(62.8 * x_m + 0.4) + 0.25 * std::cos(44.9 * y_m);
+  });
+}
+
+/// Of height `per_m` x y.
+Terrain Twisted(double per_m) {
+  const double height_m = 0.125 * std::abs(per_m);
+  return Pictured(0.5, height_m, 101, 0.8,
+                  [=](double x_m, double y_m) { return 0.5 + per_m * x_m * y_m / height_m; });
 }
 
 Terrain Named(const std::string& surface) {
@@ -87,6 +109,74 @@ TEST_CASE("A drive on the floor ends where it did") {
   CheckEnd(OdeWorld(BodyOptions{}, Named("parchment"), {-0.03, 0.02, 0.4}, kStep_s), 120,
            {0.0595339412, 0.0669172900, 0.0159738866, 0.8366749660, 0.0008954021, 0.0000032045,
             6.0150466423, 7.4399794592});
+}
+
+TEST_CASE("A drive over ridges of twenty degrees ends where it did") {
+  const Terrain ridges = Pictured(
+      1.0, 0.04 * std::tan(M_PI / 18.0), 1001, 0.8,
+      [](double x_m, double) { return std::abs(std::fmod(x_m + 10.013, 0.08) - 0.04) / 0.04; });
+  CheckEnd(OdeWorld(BodyOptions{}, ridges, {-0.03, 0.0, 0.3}, kStep_s), 120,
+           {0.0207501854, 0.0321186035, 0.0200902012, 0.9896566962, -0.0441976699, -0.0046016260,
+            5.8474447865, 7.4904519121});
+}
+
+TEST_CASE("A robot whose upper wheel carries hardly anything drives across a slope as it did") {
+  TerrainOptions options;
+  SurfaceOptions& slope = options.surfaces["ground"];
+  slope = SurfaceOptions{};
+  slope.shape = Shape::kRampDown;
+  slope.ramp_rad = 0.4;
+  slope.ramp_top_m = 2.0;
+  slope.mu = 0.9;
+  slope.slip = 0.3;
+  BodyOptions body;
+  body.com_above_m = 0.05;
+  CheckEnd(OdeWorld(body, Terrain(options), {1.5, 0.0, M_PI / 2.0}, kStep_s), 120,
+           {1.5700959591, 0.0207175274, 1.3746742832, -0.8908392269, 0.3787853714, -0.0977109565,
+            4.9942431561, 6.8606262891});
+}
+
+TEST_CASE("A robot that begins inside of blocks comes out of them as it did") {
+  TerrainOptions options;
+  options.surface = "bump";
+  SurfaceOptions& blocks = options.surfaces["bump"];
+  blocks.bump_height_m = 0.016;
+  blocks.bump_pitch_m = 0.083;  // under both wheels
+  blocks.bump_size_m = 0.03;
+  CheckEnd(OdeWorld(BodyOptions{}, Terrain(options), {0.002, 0.0415, 0.03}, kStep_s), 0,
+           {-0.0064188854, 0.0413406477, 0.0321275903, 0.9066220904, 0.4218044643, -0.0040244462,
+            0.0, 0.0});
+}
+
+TEST_CASE("A robot that slides off its place each time is put down six times") {
+  CheckEnd(OdeWorld(BodyOptions{}, HighWaves(0.02), {0.037, -0.052, 0.7}, kStep_s), 0,
+           {0.0375493932, -0.0517863601, 0.0257676371, 0.7611469274, -0.0570099191, 0.1935471978,
+            0.0, 0.0});
+}
+
+TEST_CASE("A robot that came to rest a milliradian off is put down again, one less off is not") {
+  for (const double side : {1.0, -1.0}) {
+    const auto off_rad = [side](double per_m) {
+      const OdeWorld world(BodyOptions{}, Twisted(side * per_m), {}, kStep_s);
+      const Eigen::Matrix3d& turned = world.State().world_from_robot;
+      return side * std::atan2(turned(1, 0), turned(0, 0));
+    };
+    // It turns by the more the more the ground is twisted, by a milliradian at 1.39.
+    CHECK(off_rad(1.36) > 0.95e-3);
+    CHECK(off_rad(1.36) < 1e-3);
+    CHECK(off_rad(1.48) < 1e-4);
+    CHECK(off_rad(1.48) > 0.0);
+  }
+}
+
+TEST_CASE("A robot that came to rest a tenth of a millimetre off is put down again") {
+  const auto off_m = [](double height_m) {
+    const OdeWorld world(BodyOptions{}, HighWaves(height_m), {0.06, -0.052, 0.7}, kStep_s);
+    return (world.State().position_m.head<2>() - Eigen::Vector2d(0.06, -0.052)).norm();
+  };
+  CHECK(off_m(0.0047) > 0.95e-4);
+  CHECK(off_m(0.0047) < 1e-4);
+  for (const double height_m : {0.0048, 0.0050, 0.0052, 0.0054}) CHECK(off_m(height_m) < 1e-5);
 }
 
 }  // namespace
