@@ -174,6 +174,109 @@ TEST_CASE("The robot does with random bytes exactly what its model does") {
   }
 }
 
+/// A frame with these powers and, where `spoilt` is 2 or 4, a wrong bit in the complement of left
+/// or right; its CRC is right.
+Chunk Frame(int sequence, int left, int right, size_t spoilt = 0) {
+  Chunk bytes{CommandFrame::kStart, static_cast<std::uint8_t>(sequence)};
+  for (const bool is_complement : {false, true}) {
+    for (const int power : {left, right}) {
+      const auto word = static_cast<std::uint16_t>(is_complement ? ~power : power);
+      bytes.push_back(static_cast<std::uint8_t>(word));
+      bytes.push_back(static_cast<std::uint8_t>(word >> 8));
+    }
+  }
+  if (spoilt != 0) bytes[4 + spoilt] ^= 1;
+  bytes.push_back(Crc8(bytes));
+  return bytes;
+}
+
+/// Turns of a robot that is told each of its limits, and then one more.
+class Limits {
+ public:
+  std::vector<Turn> Turns() {
+    Frames();
+    PlainLines();
+    Times();
+    return turns_;
+  }
+
+ private:
+  void Say(const Chunk& bytes, std::uint32_t after_ms = 10) {
+    now_ms_ += after_ms;
+    turns_.push_back({now_ms_, bytes});
+  }
+  void Stand() { Say(Frame(0, 0, 0)); }  // and says how much it rejected
+
+  void Frames() {
+    for (const int power : {1000, -1000, 1001, -1001, 32767, -32768, 1, -1}) {
+      for (const bool is_left : {true, false}) {
+        Stand();
+        Say(Frame(1, is_left ? power : 0, is_left ? 0 : power));
+      }
+    }
+    for (const int ahead : {0, 1, 126, 127, 128, 129, 255}) {
+      Stand();
+      Say(Frame(ahead, 300, -200));
+    }
+    for (const size_t spoilt : {2, 4}) {
+      Stand();
+      Say(Frame(1, 300, -200, spoilt));
+    }
+    Stand();
+  }
+
+  void PlainLines() {
+    for (const std::string number :
+         {"1.00", "-1.00", "0.99", "1.01", "-1.01", "9.99", "/.50", ":.50", "0/50", "0./0", "0.:0",
+          "0.5/", "0.5:", "0.5", "0.500", "00.5"}) {
+      for (const bool is_left : {true, false}) {
+        const std::string other = "0.25";
+        Say(Text("OK+LOST\n0.00 0.00\n"));
+        Say(Text((is_left ? number + " " + other : other + " " + number) + "\n"));
+      }
+    }
+    // As long as a line may be, and one byte more, with the module's word at its end.
+    for (size_t before = 0; before < 8; ++before) {
+      Say(Text("\n0.50 0.50\n"));
+      Say(Text(std::string(before, 'x') + "OK+LOST"));
+    }
+    Say(Text("\n-0.50 -0.50\n"));
+    Stand();
+  }
+
+  void Times() {
+    for (const std::uint32_t later_ms : {298, 299, 300, 301}) {
+      Stand();
+      Say(Frame(1, 300, -200));
+      Say({}, later_ms);
+      Say({}, 300);
+    }
+    for (const std::uint32_t later_ms : {98, 99, 100, 101}) {  // after a hundred: 200 in all
+      Say(Text("0.00 0.00\n"), 500);
+      Say(Text("0.10 0.10\n"), 100);
+      Say(Text("0.20 0.20\n"), later_ms);
+    }
+  }
+
+  std::vector<Turn> turns_;
+  std::uint32_t now_ms_ = 0;
+};
+
+TEST_CASE("The robot has the limits of its model: powers, numbers, lengths and times") {
+  if (!test::HasNpm("MicroPython")) return;
+  const std::vector<Turn> turns = Limits().Turns();
+  const Run run = RunFirmware(ScriptOf(turns));
+  const std::vector<std::string> model = RunModel(turns);
+  REQUIRE(run.turns.size() == model.size());
+  size_t moving = 0;
+  for (size_t i = 0; i < model.size(); ++i) {
+    INFO("turn " << i << " at " << turns[i].now_ms << " ms: " << Hex(turns[i].bytes));
+    CHECK(run.turns[i] == model[i]);
+    moving += !model[i].starts_with("0 0 ");
+  }
+  CHECK(moving > 30);
+}
+
 TEST_CASE("The robot's watchdog works across the wrap of its clock") {
   if (!test::HasNpm("MicroPython")) return;
   constexpr std::uint32_t kWrap_ms = 0x4000'0000;
@@ -192,11 +295,14 @@ TEST_CASE("The robot starts at zero and whatever ends its program stops the moto
   CHECK(broken.turns[0] == "0 0 -");
   CHECK(broken.turns[1].starts_with("3000 3000 "));
   CHECK(broken.end.at("speeds") == "0 0");
-  CHECK(broken.end.at("screen").starts_with("rift FAILED|"));
+  CHECK(broken.end.at("screen") == "rift FAILED|the serial line |broke, and nobod");
+  CHECK(broken.end.at("end").starts_with("failed OSError("));
+  CHECK(broken.end.at("off") == "2");  // before it draws, and when it ends
 
   const Run unplugged = RunFirmware(fmt::format("0 -\n10 {}\n", Hex(Text("0.50 0.50\n"))));
   CHECK(unplugged.end.at("end") == "over");
   CHECK(unplugged.end.at("speeds") == "0 0");
+  CHECK(unplugged.end.at("off") == "1");
   CHECK(unplugged.end.at("told") == "2");  // the motors, of what changes alone
 }
 

@@ -49,5 +49,5 @@ def next_chunk():
     data = _data
     _data = "-"
     if data == "!":
-        raise OSError("the serial line broke")
+        raise OSError("the serial line broke, and nobody knows why")
     return b"" if data == "-" else bytes.fromhex(data)

@@ -10,6 +10,7 @@ class Pin:
 
 class UART:
     def __init__(self, number, baudrate, tx, rx, rxbuf):
+        assert bench.speeds == (0, 0)  # the motors stand before anything is heard
         bench.uart = (number, baudrate, tx.number, rx.number, rxbuf)
         self._data = b""
 

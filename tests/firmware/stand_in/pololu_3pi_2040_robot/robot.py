@@ -31,10 +31,12 @@ class Display:
         self._lines = []
 
     def fill(self, color):
+        assert color == 0  # dark, and letters are light
         self._lines = []
 
     def text(self, text, x, y, color=1):
-        assert x == 0 and 8 * len(self._lines) <= y <= 56  # letters are 8 px high
+        # Letters are 8 px high, and five lines have 64 px.
+        assert (x, y, color) == (0, 12 * len(self._lines), 1)
         self._lines.append(text)
 
     def show(self):
