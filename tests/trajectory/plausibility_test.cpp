@@ -133,5 +133,22 @@ TEST_CASE(
   CHECK(NotesOfLegs({0.0, 1.0}, 20, 2.0).empty());
 }
 
+TEST_CASE("A robot that jitters within five centimetres of its place makes no turn of the path") {
+  const auto notes = [](double to_m, bool is_x) {
+    std::string text = "t,x,y,z,roll,pitch,yaw\n";
+    for (int i = 0; i < 40; ++i) {
+      const double off_m = i % 2 == 0 ? 0.0 : to_m;
+      text += fmt::format("{},{},{},0.8,0,0,2\n", 0.05 * i, is_x ? off_m : 0.0, is_x ? 0.0 : off_m);
+    }
+    return Notes(text, Format::kTracker).size();
+  };
+  for (const bool is_x : {true, false}) {
+    for (const double side : {1.0, -1.0}) {
+      CHECK(notes(side * 0.049, is_x) == 0);
+      CHECK(notes(side * 0.051, is_x) == 1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rift::trajectory

@@ -1,5 +1,6 @@
 #include "trial/wanted_steering.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -258,6 +259,13 @@ TEST_CASE("The time a task needs is twice its legs and its turns, and the time t
   const double way_s = (0.2 / 0.1 + std::log(0.6 / 0.2) / 0.5 + 0.4 / 0.3) / 1.2;
   CHECK(NeededTime_s(task, Navigator(), kModel, 0.2, options) ==
         Approx(2.0 * (way_s + turn_s) + 0.7).epsilon(0.002));
+  // Of a hundred parts of a leg, at the speed of the middle of each.
+  double parts_s = 0.0;
+  for (int part = 0; part < 100; ++part) {
+    parts_s += 0.01 / (1.2 * std::clamp(0.5 * (0.005 + 0.01 * part), 0.1, 0.3));
+  }
+  CHECK(NeededTime_s(task, Navigator(), kModel, 0.2, options) ==
+        Approx(2.0 * (parts_s + turn_s) + 0.7).epsilon(1e-9));
 }
 
 TEST_CASE("A wheel turns from the larger of dead band and breakaway on, evenly a fifth above") {
