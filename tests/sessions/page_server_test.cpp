@@ -3,10 +3,12 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -90,6 +92,7 @@ class SilentClient {
     REQUIRE(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
   }
   ~SilentClient() { ::close(socket_); }
+  int Descriptor() const { return socket_; }
 
  private:
   int socket_ = ::socket(AF_INET, SOCK_STREAM, 0);
@@ -102,6 +105,45 @@ TEST_CASE("A client that says nothing does not keep the page from others") {
   const Address at(server.Url());
   const SilentClient silent(at.port);
   CHECK_THAT(test::AskServer(at.port, "GET " + at.path), Catch::EndsWith("\r\n\r\nit runs"));
+}
+
+/// A client that asks for a page and looks for its answer later.
+class AskingClient {
+ public:
+  explicit AskingClient(const Address& at) : connection_(at.port) {
+    const std::string request = "GET " + at.path + " HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
+    REQUIRE(::write(connection_.Descriptor(), request.data(), request.size()) ==
+            static_cast<ssize_t>(request.size()));
+  }
+  bool HasAnswerWithin(int ms) const {
+    pollfd entry{connection_.Descriptor(), POLLIN, 0};
+    return ::poll(&entry, 1, ms) == 1;
+  }
+
+ private:
+  SilentClient connection_;
+};
+
+TEST_CASE("Sixteen clients are answered at a time, and the next one when one of them is gone") {
+  using Clock = std::chrono::steady_clock;
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "live", "it runs");
+  const PageServer server({folder / "live"});
+  const Address at(server.Url());
+  CHECK_THAT(test::AskServer(at.port, "GET " + at.path), Contains("200 OK"));
+  // A machine that is too busy for it in the two seconds that a silent client is given tries again.
+  test::WaitUntil("sixteen silent clients were there at once", [&] {
+    const Clock::time_point begun = Clock::now();
+    std::vector<std::unique_ptr<SilentClient>> silent;
+    for (int i = 0; i < 16; ++i) silent.push_back(std::make_unique<SilentClient>(at.port));
+    const AskingClient next(at);
+    const bool is_answered = next.HasAnswerWithin(50);
+    if (Clock::now() - begun > std::chrono::seconds(1)) return false;
+    CHECK_FALSE(is_answered);
+    silent.pop_back();
+    CHECK(next.HasAnswerWithin(60'000));
+    return true;
+  });
 }
 
 TEST_CASE("Two page servers have addresses of their own, and one that is gone answers nobody") {
