@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <set>
 
-#include "commands/drive/request.hpp"
 #include "rift/experiment/path_template.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
@@ -334,11 +333,6 @@ TEST_CASE("Chosen settings that name other parameters each have the experiment's
                         experiment::NumberValue(trial.experiment.control.v_max).text);
     }
   }
-}
-
-TEST_CASE("A command is parted into words at its blanks and no shell reads them") {
-  CHECK(commands::WordsOf("twin --set 'a b' $HOME") ==
-        std::vector<std::string>{"twin", "--set", "a b", "$HOME"});
 }
 
 TEST_CASE("A scene that says where it is goes on until it is no longer needed") {

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "support/processes/process.hpp"
 
@@ -130,6 +132,11 @@ TEST_CASE("A drive goes into a folder, neither a file nor stdout") {
     Refused(OneDrive(), "a drive is a folder", [&](DriveRequest& r) { r.out = out; });
   }
   Taken(OneDrive(), [&](DriveRequest& r) { r.out = folder / "new"; });
+}
+
+TEST_CASE("A command is parted into words at its blanks and no shell reads them") {
+  CHECK(WordsOf("twin --set 'a b' $HOME") ==
+        std::vector<std::string>{"twin", "--set", "a b", "$HOME"});
 }
 
 }  // namespace
