@@ -304,6 +304,25 @@ TEST_CASE("A drive with hardly a turn, or whose turns are not the wheels', tells
   CHECK_FALSE(LagOverDrive(wheels, {}));
 }
 
+TEST_CASE("A turn of exactly 0.09 rad, by wheels and by the picture, tells a lag") {
+  // There and back, from 2 s to 4 s.
+  const auto turn = [](double late_s, double rad) {
+    std::vector<Angle> angles;
+    for (int i = 0; i < 300; ++i) {
+      const double since_s = std::clamp(0.02 * i - late_s - 2.0, 0.0, 2.0);
+      angles.push_back({0.02 * i, rad * std::min(1.0, 1.25 * std::min(since_s, 2.0 - since_s))});
+    }
+    return angles;
+  };
+  constexpr double kLeast_rad = 0.09;
+  const auto lag_s = LagOverDrive(turn(0.1, kLeast_rad), turn(0.0, kLeast_rad));
+  REQUIRE(lag_s);
+  CHECK(*lag_s == Approx(0.1).margin(0.003));
+  const double less_rad = std::nextafter(kLeast_rad, 0.0);
+  CHECK_FALSE(LagOverDrive(turn(0.1, less_rad), turn(0.0, kLeast_rad)));
+  CHECK_FALSE(LagOverDrive(turn(0.1, kLeast_rad), turn(0.0, less_rad)));
+}
+
 TEST_CASE("An angle runs on through half a turn in both directions") {
   for (const double sign : {1.0, -1.0}) {
     std::vector<Angle> angles;

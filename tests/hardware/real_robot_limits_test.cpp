@@ -136,6 +136,21 @@ TEST_CASE("A robot that is let go is sent zeros for 0.3 s, or until it has confi
   }
 }
 
+TEST_CASE("A stop is on a free line before anything else is done") {
+  Bench bench;
+  HardwareOptions hardware;
+  hardware.line.baud = 1'000'000;  // no command waits for the one before
+  RealRobot robot(bench, bench, bench, {hardware, Protocol::kFramed, false});
+  Settle(robot, bench);
+  robot.Arm();
+  DriveOn(robot, {0.2, 0.25}, 0.3, bench);
+  bench.written.clear();
+  const size_t sent = robot.Record().sent;
+  robot.Stop();
+  CHECK(bench.written == std::set<std::pair<int, int>>{{0, 0}});
+  CHECK(robot.Record().sent == sent + 1);
+}
+
 TEST_CASE("A stop is acknowledged by no answer to a zero that was sent before it") {
   for (int i = 0; i < 10; ++i) {
     Bench bench;

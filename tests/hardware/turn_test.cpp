@@ -213,6 +213,60 @@ TEST_CASE("A turn takes its pulses, half a second and a little more after each, 
   CHECK(turn_s() == Approx(0.02 + 14 * (0.06 + 0.5) + 0.95 + 0.7).margin(0.05));
 }
 
+/// A bench's line that notes when each power other than zero was begun to be sent.
+class Noted : public ByteLine {
+ public:
+  explicit Noted(Bench& bench) : bench_(bench) {}
+  bool Write(Bytes bytes) override {
+    const auto frame = DecodeCommand(bytes);
+    if (frame && !frame->power.IsZero() && last_.IsZero()) begun_s.push_back(bench_.Now_s());
+    if (frame) last_ = frame->power;
+    return bench_.Write(bytes);
+  }
+  std::vector<std::uint8_t> Read() override { return bench_.Read(); }
+  size_t Unsent() override { return bench_.Unsent(); }
+
+  std::vector<double> begun_s;
+
+ private:
+  Bench& bench_;
+  MilliPower last_;
+};
+
+TEST_CASE("No pair of pulses is like the one before: each rest is longer by its own time") {
+  Bench bench;
+  bench.slip_left = bench.slip_right = 0.0;  // it never turns far enough
+  Noted line(bench);
+  HardwareOptions hardware = Lenient();
+  hardware.line.baud = 1'000'000;  // no command waits for the one before
+  RealRobot robot(line, bench, bench, {hardware, Protocol::kFramed, false});
+  for (int i = 0; i < 50; ++i) robot.Advance(0.02);
+  robot.Arm();
+  CHECK_THROWS(MeasureLatency(robot, hardware.odometry, hardware.turn, kOneWay_s));
+  REQUIRE(line.begun_s.size() == 14);
+  const std::vector<double> more_s{0.0, 0.05, 0.15, 0.0, 0.05, 0.2};
+  for (size_t i = 1; i < line.begun_s.size(); ++i) {
+    INFO("after pulse " << i);
+    CHECK(line.begun_s[i] - line.begun_s[i - 1] ==
+          Approx(0.06 + 0.5 + more_s[(i - 1) % 6]).margin(0.0025));
+  }
+}
+
+TEST_CASE("A picture may be ahead of encoders that are read often by two hundredths of a second") {
+  const auto turn_on = [](double ahead_s) {
+    Bench bench;
+    bench.bend = [=](trial::PoseMeasurement& pose) { pose.captured_s -= ahead_s; };
+    HardwareOptions hardware = Lenient();
+    hardware.line.baud = 1'000'000;
+    hardware.line.heartbeat_s = 0.017;  // and between two of them one for each picture
+    return TurnOn(bench, hardware);
+  };
+  const double own_s = *turn_on(0.0).found.value().delay.camera_s;
+  CHECK(*turn_on(own_s + 0.0192).found.value().delay.camera_s == Approx(-0.0192).margin(0.0005));
+  CHECK_THROWS_WITH(turn_on(own_s + 0.021),
+                    Catch::StartsWith("the picture shows the turn 21 ms before the encoders do"));
+}
+
 TEST_CASE("How far apart encoders are read is told by nine in ten, not by the usual two") {
   Bench bench;
   int commands = 0;

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <limits>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace rift::hardware {
 namespace {
@@ -78,6 +80,50 @@ TEST_CASE("What is not exactly two numbers of two decimals in range is no plain 
     CHECK_FALSE(ParsePlainLine(bad));
   }
   CHECK(ParsePlainLine("-0.85 1.00") == MilliPower{-850, 1000});
+}
+
+TEST_CASE("Each character of a plain line must be the one that belongs there") {
+  const std::string line = "-0.85 1.00";
+  REQUIRE(ParsePlainLine(line) == MilliPower{-850, 1000});
+  for (size_t at = 1; at < line.size(); ++at) {
+    for (const char other :
+         {'/', ':', ',', 'x', ' ', '.', '-'}) {  // around the digits, and between
+      if (other == line[at]) continue;
+      std::string wrong = line;
+      wrong[at] = other;
+      INFO(wrong);
+      CHECK_FALSE(ParsePlainLine(wrong));
+    }
+  }
+}
+
+TEST_CASE("A frame and an answer have their own start, length and every byte of their CRC") {
+  const CommandBytes command = Encode(CommandFrame{7, {300, -200}});
+  REQUIRE(DecodeCommand(command));
+  const AnswerBytes answer = Encode(Answer{9, 3, -123456, 2147483647, 5021, 255});
+  REQUIRE(DecodeAnswer(answer));
+  const auto check_lengths = [](const auto& bytes, const auto& decode) {
+    std::vector<std::uint8_t> longer(bytes.begin(), bytes.end());
+    longer.push_back(Crc8(Bytes(longer)));  // the last byte is right
+    CHECK_FALSE(decode(Bytes(longer)));
+    for (size_t length = 0; length < bytes.size(); ++length) {
+      std::vector<std::uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<long>(length));
+      if (length > 1) cut.back() = Crc8(Bytes(cut).first(length - 1));
+      CHECK_FALSE(decode(Bytes(cut)));
+    }
+  };
+  check_lengths(command, [](Bytes bytes) { return DecodeCommand(bytes).has_value(); });
+  check_lengths(answer, [](Bytes bytes) { return DecodeAnswer(bytes).has_value(); });
+  for (size_t at = 0; at < answer.size(); ++at) {
+    for (int bit = 0; bit < 8; ++bit) {
+      AnswerBytes wrong = answer;
+      wrong[at] ^= static_cast<std::uint8_t>(1 << bit);
+      CHECK_FALSE(DecodeAnswer(wrong));
+      if (at > 0) continue;
+      wrong.back() = Crc8(Bytes(wrong).first(wrong.size() - 1));  // another start, rightly sealed
+      CHECK_FALSE(DecodeAnswer(wrong));
+    }
+  }
 }
 
 TEST_CASE("Every command comes out of its frame as it went in") {
