@@ -80,6 +80,19 @@ TEST_CASE("However much its points scatter, half of them at least are kept") {
   CHECK(line->count < 61);
 }
 
+TEST_CASE("Points are left out in three rounds at most") {
+  // Each round leaves out one more of these: 6, 4, 3 and 0.6 px off the line that the others lie
+  // about.
+  Points points = Along({0.0, 0.0}, {20.0, 0.0}, 21, 0.05);
+  points[6].y() = 6.0;
+  points[20].y() = 4.0;
+  points[18].y() = 3.0;
+  points[9].y() = 0.6;
+  const auto line = FitLine(points, 0.05);
+  REQUIRE(line);
+  CHECK(line->count == 18);
+}
+
 TEST_CASE("A line wants four points") {
   CHECK_FALSE(FitLine(Along({0.0, 0.0}, {9.0, 0.0}, 3, 0.0), 0.1));
   CHECK(FitLine(Along({0.0, 0.0}, {9.0, 0.0}, 4, 0.0), 0.1));
