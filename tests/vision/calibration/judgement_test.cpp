@@ -304,5 +304,16 @@ TEST_CASE("The fisheye is not taken where it fits fewer views") {
   CHECK(Calibrate(views, kBoard, options).camera.lens == Lens::kEquidistant);
 }
 
+TEST_CASE("Boards that are seen as a single point fit no lens, and are refused for that") {
+  std::vector<BoardView> views = SixViews();
+  for (BoardView& view : views) view.corners.assign(view.corners.size(), view.corners.front());
+  const Calibration found = Calibrate(views, kBoard, Lenient());
+  CHECK(found.verdict == kRefuse);
+  CHECK(found.reasons == std::vector<std::string>{"no lens model fits the views"});
+  CHECK(found.camera.width_px == 0);
+  CHECK(std::isnan(found.rms_px));
+  CHECK((std::isnan(found.plumb_bob_px) && std::isnan(found.equidistant_px)));
+}
+
 }  // namespace
 }  // namespace rift::vision

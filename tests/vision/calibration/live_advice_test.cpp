@@ -1,4 +1,5 @@
 // What is said to the one who holds the board, picture by picture, in whole lines.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <functional>
@@ -148,6 +149,52 @@ TEST_CASE("A picture like one that was taken is told with its number and the way
   REQUIRE(heard.said.size() == 3);
   CHECK(heard.said[1] == "view 1: frame000001; next, " + heard.scenes[2].next.text);
   CHECK(heard.said[2] == "view 2: frame000004; next, " + heard.scenes[5].next.text);
+}
+
+/// A live camera whose pictures come at once, and then so many times none.
+class QuickCapture : public Capture {
+ public:
+  QuickCapture(std::vector<Frame> pictures, int turns_without)
+      : pictures_(std::move(pictures)), turns_without_(turns_without) {}
+  std::optional<Frame> Next(double timeout_s) override {
+    longest_wait_s_ = std::max(longest_wait_s_, timeout_s);
+    if (next_ == pictures_.size()) {
+      --turns_without_;
+      return std::nullopt;
+    }
+    Frame frame = pictures_[next_];
+    frame.index = next_++;
+    return frame;
+  }
+  CaptureStatus Status() const override {
+    return {.state = turns_without_ > 0 ? CameraState::kRunning : CameraState::kEnded};
+  }
+  bool IsRecording() const override { return false; }
+  double LongestWait_s() const { return longest_wait_s_; }
+
+ private:
+  std::vector<Frame> pictures_;
+  std::size_t next_ = 0;
+  int turns_without_;
+  double longest_wait_s_ = 0.0;
+};
+
+TEST_CASE("Every picture is shown as it comes, and the same one is not drawn without end") {
+  constexpr std::size_t kPictures = 20;
+  constexpr int kTurnsWithout = 4000;
+  QuickCapture capture(std::vector<Frame>(kPictures, Held(std::nullopt)), kTurnsWithout);
+  std::vector<int> shown(kPictures, 0);
+  LiveListener listener{
+      .is_stopped = [] { return false; }, .say = [](const std::string&) {}, .hint_s = 1e9};
+  listener.show = [&](const LiveScene& scene) {
+    if (scene.frame != nullptr) ++shown.at(scene.frame->index);
+    return LiveInput{};
+  };
+  ViewsFromCamera(capture, kBoard, {}, listener);
+  for (const int times : shown) CHECK(times >= 1);
+  // Ten times a second without a new one: far fewer than the turns, however busy the machine.
+  CHECK(shown.back() < kTurnsWithout / 4);
+  CHECK(capture.LongestWait_s() == Approx(0.02));  // so often are keys looked at
 }
 
 }  // namespace
