@@ -72,5 +72,23 @@ TEST_CASE("What no lens has is told in a whole line, and each bound of it is one
   CHECK(why(64.0, 64.0, 240.0, 640.0) == "");
 }
 
+TEST_CASE("Of a picture whose width or height is not known no lens is refused") {
+  for (const auto& [width_px, height_px] : {std::pair{0, 480}, {640, 0}, {0, 0}}) {
+    CameraModel camera{.name = "c", .width_px = width_px, .height_px = height_px};
+    camera.k << 6.0, 0.0, 320.0, 0.0, 6e9, 240.0, 0.0, 0.0, 1.0;
+    CHECK_FALSE(WhyNoLens(camera));
+  }
+}
+
+TEST_CASE("No pixels have no rays, and no points no pixels, by either lens") {
+  CameraModel camera = test::PaperCamera();
+  for (const Lens lens : {Lens::kPlumbBob, Lens::kEquidistant}) {
+    camera.lens = lens;
+    camera.distortion = {0.0, 0.0, 0.0, 0.0};
+    CHECK(RaysFromPixels(camera, {}).empty());
+    CHECK(PixelsFromPoints(camera, {}).empty());
+  }
+}
+
 }  // namespace
 }  // namespace rift::vision
