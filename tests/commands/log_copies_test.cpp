@@ -111,6 +111,25 @@ TEST_CASE("A simulated run and a drive are copied for evo and for Foxglove alike
   CHECK_THAT(again.err, Catch::Contains("drive.tum") && Catch::Contains("--force"));
 }
 
+TEST_CASE("A drive of hours is copied, though it is too long for a film") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "experiment.yaml",
+                  "waypoints: [{x: 0, y: 0, heading: 0}, {x: 0.25, y: 0.02, stop: true}]\n");
+  test::WriteText(folder / "trajectory.csv", "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n5000,0.1,0.02,0.3\n");
+  const test::ProcessResult copied =
+      RunRift({"drive", "--replay", folder.Path(), "--tum", folder / "log.tum"});
+  INFO(copied.err);
+  CHECK(copied.exit_code == 0);
+  CHECK_THAT(copied.out, Catch::EndsWith("\n2 poses over 5000.00 s\n"));
+  CheckTum(folder / "log.tum", LogOf(folder / "trajectory.csv"));
+  const test::ProcessResult filmed =
+      RunRift({"drive", "--replay", folder.Path(), "--video", folder / "log.mp4"});
+  CHECK(filmed.exit_code == 2);
+  CHECK(filmed.err ==
+        "rift: a film of 5000 s at 30 pictures a second has 150000 pictures, but at most 100000 "
+        "are possible: lower fps\n");
+}
+
 TEST_CASE("A tracked log is copied for evo and for Foxglove") {
   const test::TemporaryFolder folder;
   const std::string data = test::SourceDir() + "/data/camera";

@@ -192,6 +192,8 @@ TEST_CASE("Parameters that can explain little are named together, a start that i
   CHECK(because().size() == 4);
   explanation.anatomy.start_m = {-0.0123, -0.02, -0.001, 9};
   CHECK(because().size() == 4);
+  explanation.anatomy.start_m = {0.0, 0.0001, 0.0002, 9};  // nothing of it goes
+  CHECK(because().size() == 4);
 }
 
 TEST_CASE("What the gap is made of adds up, and says of which mean it is") {
