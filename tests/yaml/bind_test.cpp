@@ -234,6 +234,13 @@ TEST_CASE("A rule between fields is placed at the key it names that was written 
         "own.yaml:1:11: key 'control': v_min must be at most v_max (values also from base.yaml)");
   CHECK(error("control: {v_min: 0.2, v_max: 0.1}\n", "title: x\n") ==
         "base.yaml:1:11: key 'control': v_min must be at most v_max");
+  // Of three writers the command line is the last, in whatever order the rule names their keys.
+  Node of_three = Parse("control: {cruise_cap: 0.3}\n", "base.yaml");
+  Merge(of_three, Parse("control: {v_min: 0.5}\n", "own.yaml"));
+  Merge(of_three, ParseOverride("control.v_max=0.4"));
+  CHECK(ErrorOf([&] { Bind(of_three, robot); }) ==
+        "--set control.v_max: key 'control': v_min must be at most v_max "
+        "(values also from own.yaml)");
 }
 
 struct Table {
