@@ -1,8 +1,10 @@
 #include "rift/vision/camera/jpeg.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 namespace rift::vision {
 namespace {
@@ -171,6 +173,8 @@ TEST_CASE("A picture is decoded at eighths of its size, in grey or in three alik
   CHECK(DecodeJpeg(Bytes{}, true, 8).empty());
   CHECK(WriteJpeg(picture, 95, false).size() > WriteJpeg(picture, 20, false).size());
   CHECK(WriteJpeg(picture, 95, true).size() > jpeg.size());
+  const Bytes even = WriteJpeg(cv::Mat1b(16, 16, std::uint8_t{100}), 95, true);
+  CHECK(DecodeJpeg(even, true, 8).at<cv::Vec3b>(8, 8) == cv::Vec3b::all(100));  // of no colour
   // What is cut off is grey, and the rest is there.
   const Bytes half(jpeg.begin(), jpeg.begin() + static_cast<std::ptrdiff_t>(jpeg.size() * 3 / 4));
   const cv::Mat damaged = DecodeJpeg(half, false, 8);
@@ -194,6 +198,22 @@ TEST_CASE("Stray bytes before a marker are no damage") {
   CHECK_FALSE(reader.Read(WriteJpeg(Steps(64, 48), 95, false), 64, 47, {0, 0, 8, 8}));
   CHECK_FALSE(reader.Read({}, 64, 48, {0, 0, 8, 8}));
   CHECK_FALSE(reader.Read(WriteJpeg(Steps(64, 48), 95, false), 64, 48, {8, 8, 0, 4}));
+}
+
+TEST_CASE("What stands behind the bytes of a picture in memory is none of it") {
+  const Bytes exif = Segment(0xE1, {'E', 'x', 'i', 'f', 0, 0, 1, 2, 3});
+  const Bytes whole =
+      kStart + exif + FrameHeader(0xC0) + Segment(0xDA, {1, 2, 3}) + Bytes{9} + kEnd;
+  const std::size_t size_ends = 2 + exif.size() + 9;  // of the frame header its width ends there
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    INFO(length);
+    const std::span<const std::uint8_t> cut = std::span(whole).first(length);
+    CHECK(JpegLength(cut) == length);
+    CHECK(SizeOfJpeg(cut).has_value() == (length >= size_ends));
+    // Behind the name, at 12 bytes, are three more.
+    CHECK(ExifOfJpeg(cut).size() == (length < 12 ? 0 : std::min<std::size_t>(length - 12, 3)));
+  }
+  CHECK(JpegLength(whole) == whole.size());
 }
 
 }  // namespace

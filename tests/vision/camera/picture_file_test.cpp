@@ -49,7 +49,9 @@ TEST_CASE("The head of each kind of picture states the size that it is decoded t
     CHECK((grey.cols == kWidth_px && grey.rows == kHeight_px && grey.channels() == 1));
     CHECK((colour.cols == kWidth_px && colour.rows == kHeight_px && colour.channels() == 3));
     for (std::size_t length = 0; length < std::min<std::size_t>(bytes.size(), 40); ++length) {
-      StatedSize(std::span(bytes).first(length));  // reads nothing behind its end
+      const bool is_stated = StatedSize(std::span(bytes).first(length)).has_value();
+      if (ending == std::string(".png")) CHECK(is_stated == (length >= 24));
+      if (ending == std::string(".bmp")) CHECK(is_stated == (length >= 26));
     }
   }
 }
@@ -114,6 +116,22 @@ TEST_CASE("A Netpbm head has comments and white space of any length") {
   CHECK_FALSE(StatedSize(Text("P5 300 # 7")));
   CHECK_FALSE(StatedSize(Text("P5 -300 7")));
   CHECK_FALSE(StatedSize(Text("P7\nWIDTH 300\nHEIGHT 7\n")));
+  for (const char* other : {"P1 300 7", "P4 300 7", "P7 300 7", "p5 300 7", "no 300 7"}) {
+    CHECK_FALSE(StatedSize(Text(other)));
+  }
+  for (const char* kind : {"P2 300 7", "P3 300 7", "P5 300 7", "P6 300 7"}) {
+    CHECK(Is(StatedSize(Text(kind)), 300.0, 7.0));
+  }
+}
+
+TEST_CASE("What stands behind a Netpbm head in memory is none of it") {
+  const Bytes head = Text("P5 300 71 255");
+  const auto size_of = [&](std::size_t length) {
+    return StatedSize(std::span(head).first(length));
+  };
+  CHECK(Is(size_of(9), 300.0, 71.0));
+  CHECK(Is(size_of(8), 300.0, 7.0));
+  for (std::size_t length = 0; length <= 7; ++length) CHECK_FALSE(size_of(length));
 }
 
 TEST_CASE("What is no picture, or more than is put up with, is told before it is read") {
