@@ -123,5 +123,23 @@ TEST_CASE("A step that rises by less than half the least contrast in two pixels 
   CHECK_FALSE(is_found(5.0));  // 48
 }
 
+TEST_CASE("A stronger edge more than a cell further out is not taken for one of the tag's") {
+  // Black on paper of 120 grey values, which ends 14 px away on white.
+  Square square;
+  square.Paint([&](int x, int y) {
+    const double beyond = std::max({kLow - x, x - square.High(), kLow - y, y - square.High()});
+    if (beyond > 14.0) return 255.0;
+    return 0.5 * (GreyAt(x, y, square.High(), square.High()) - kBlack) + kBlack;
+  });
+  const auto fitted = square.Fit();
+  REQUIRE(fitted);
+  CHECK(fitted->white_grey == Approx(120.0).margin(0.1));
+  for (const Eigen::Vector2d& corner : fitted->pixels) {
+    for (const double at : {corner.x(), corner.y()}) {
+      CHECK(std::min(std::abs(at - kLow), std::abs(at - square.High())) < 0.05);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rift::vision

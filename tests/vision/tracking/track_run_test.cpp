@@ -468,6 +468,17 @@ TEST_CASE("Reference tags too small for the checks are looked for once in every 
   REQUIRE(run.moved_m);
   CHECK(*run.moved_m < 1e-3);
   CHECK(tracked.said.empty());
+  // Later on, which would cost time, they are not: that they were moved is not seen.
+  SmallRecording moved({.tags = {FloorTag(5, 0.19, 0.1, 0.018)}});
+  moved.Add(RobotAt(-0.1, 0.0, 0.0));
+  std::ifstream file(moved.Path() + "/0000.jpg", std::ios::binary);
+  recording.Write({std::istreambuf_iterator<char>(file), {}});
+  Tracked longer(recording.Path(), camera);
+  longer.options.check_decimate = 4;
+  longer.options.check_every_s = 0.05;
+  const TrackRun later = RunTracking(longer.parts);
+  REQUIRE(later.moved_m);
+  CHECK(*later.moved_m < 1e-3);
 }
 
 TEST_CASE("Reference tags are checked as soon as so much time has passed, in every such picture") {
