@@ -214,5 +214,37 @@ TEST_CASE("A camera is closed when its capture ends, and not before") {
   }
 }
 
+/// A camera whose driver hangs until it is let go.
+struct Hanging {
+  std::atomic<bool> is_asked = false, is_let_go = false, is_closed = false;
+};
+
+class HangingCamera final : public CameraSource {
+ public:
+  explicit HangingCamera(std::shared_ptr<Hanging> state) : state_(std::move(state)) {}
+  ~HangingCamera() override { state_->is_closed = true; }
+
+  bool Read(Frame&) override {
+    state_->is_asked = true;
+    state_->is_let_go.wait(false);
+    return false;
+  }
+
+ private:
+  std::shared_ptr<Hanging> state_;
+};
+
+TEST_CASE("A capture ends while its camera hangs, which is closed once it hangs no more") {
+  const auto state = std::make_shared<Hanging>();
+  {
+    const CaptureThread capture([state] { return std::make_unique<HangingCamera>(state); }, {});
+    test::WaitUntil("it hangs", [&] { return state->is_asked.load(); });
+  }
+  CHECK_FALSE(state->is_closed);
+  state->is_let_go = true;
+  state->is_let_go.notify_all();
+  test::WaitUntil("it is closed", [&] { return state->is_closed.load(); });
+}
+
 }  // namespace
 }  // namespace rift::vision
