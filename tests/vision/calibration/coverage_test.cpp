@@ -255,5 +255,20 @@ TEST_CASE("A board as large as the picture is wanted in its middle") {
   CHECK(middle.y() == Approx(200.0));
 }
 
+TEST_CASE("What is covered in the picture's width, or in its height, is asked for in the other") {
+  const auto next = [](const std::vector<ViewPlace>& taken) {
+    std::vector<ViewResult> views;
+    for (const ViewPlace& place : taken) views.push_back(Used(Held(place)));
+    return NextViewFor(views, kBoard, 0.7);
+  };
+  const ViewPlace near_in_middle{0.5, 0.5, 0.5, 0.6};
+  const NextView higher = next({near_in_middle, {0.05, 0.5, 0.25, 0.6}, {0.95, 0.5, 0.25, 0.6}});
+  CHECK_FALSE(higher.text.empty());
+  CHECK(std::abs(higher.place.y - 0.5) == Approx(0.45));
+  const NextView aside = next({near_in_middle, {0.5, 0.05, 0.25, 0.6}, {0.5, 0.95, 0.25, 0.6}});
+  CHECK_FALSE(aside.text.empty());
+  CHECK(std::abs(aside.place.x - 0.5) == Approx(0.45));
+}
+
 }  // namespace
 }  // namespace rift::vision

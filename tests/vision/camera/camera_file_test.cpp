@@ -356,5 +356,25 @@ TEST_CASE("The places and the error of a world frame go up to their limits on ei
   }
 }
 
+TEST_CASE("Of a reference tag the id is enough, and a camera may stand a million metres off") {
+  const auto read = [](const std::string& x_m, const std::string& y_m) {
+    return ReadCamera(
+        "K: [900, 0, 320, 0, 910, 240, 0, 0, 1]\nD: [0, 0, 0, 0]\nworld_frame:\n  "
+        "world_from_camera: [1, 0, 0, " +
+            x_m + ", 0, 1, 0, " + y_m + ", 0, 0, 1, 2, 0, 0, 0, 1]\n  tags: [{id: 3}]\n",
+        "cam.yaml");
+  };
+  const auto world = read("1000000", "-1000000").world;
+  REQUIRE(world);
+  CHECK(world->world_from_camera.translation() == Eigen::Vector3d(1e6, -1e6, 2.0));
+  CHECK((world->residual_m == 0.0 && world->origin.empty()));
+  REQUIRE(world->marks.size() == 1);
+  CHECK(world->marks[0].tag_id == 3);
+  CHECK(world->marks[0].p_in_world == Eigen::Vector3d::Zero());
+  CHECK(world->marks[0].seen_px == Eigen::Vector2d::Zero());
+  CHECK_THROWS_AS(read("1000001", "0"), yaml::Error);
+  CHECK_THROWS_AS(read("0", "-1000001"), yaml::Error);
+}
+
 }  // namespace
 }  // namespace rift::vision
