@@ -89,6 +89,9 @@ TEST_CASE("The paths of a fit are as high as they are wide, and those of no leng
   const Figure still = CalibrationPathFigure({.name = "a", .real = To(0.0, 0.0)});
   CHECK(still.height_px == 520);
   CHECK(StepOf(still) == "5e-05");  // 16 of 400 px
+  // Of higher ones the height is the limit: 520 px for 1.6 m, of which 16 are 0.049 m.
+  CHECK(StepOf(CalibrationPathFigure({.name = "a", .real = To(1.0, 1.6)})) == "0.05");
+  CHECK(StepOf(CalibrationPathFigure({.name = "a", .real = To(1.0, 1.7)})) == "0.1");
 }
 
 TEST_CASE("Paths to the left and to the right of the start, or downwards, have the same picture") {
