@@ -159,8 +159,21 @@ TEST_CASE("Without a picture there is room for words, which stay in it however m
   DrawLines(bright, {"some words"}, false);
   CHECK(bright.at<cv::Vec3b>(240 - 28 - 1, 4) == cv::Vec3b::all(255));
   CHECK(bright.at<cv::Vec3b>(240 - 28, 4) != cv::Vec3b::all(255));
-  CHECK(bright.at<cv::Vec3b>(239, 4) != cv::Vec3b::all(255));
+  CHECK(bright.at<cv::Vec3b>(239, 4) == cv::Vec3b(99, 96, 95));  // 0.3 of it, 0.7 of the panel
   CHECK(bright.at<cv::Vec3b>(239, 319) == cv::Vec3b::all(255));
+}
+
+TEST_CASE("A path of many short legs is drawn as one of a long leg") {
+  const vision::CameraModel camera = test::PaperCamera();
+  const auto black = [&](int legs) {
+    TrackScene scene{.camera = &camera};
+    for (int i = 0; i <= legs; ++i) scene.path_m.emplace_back(-0.3 + 0.6 * i / legs, 0.0);
+    cv::Mat found;
+    cv::inRange(DrawTrack(scene).bgr, cv::Scalar::all(0), cv::Scalar::all(0), found);
+    return cv::countNonZero(found);
+  };
+  CHECK(black(1) > 50);
+  CHECK(black(60) == Approx(black(1)).epsilon(0.15));  // of a centimetre
 }
 
 TEST_CASE("What is drawn over a picture has the colours that its legend tells") {
