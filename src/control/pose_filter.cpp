@@ -52,7 +52,6 @@ void PosePredictor::NoteSent(double now_s, const WheelPower& power) {
 
 geometry::Pose2 PosePredictor::Predict(const geometry::Pose2& world_from_robot, double arrived_s,
                                        double now_s) const {
-  if (delay_s_ <= 0.0) return world_from_robot;
   geometry::Pose2 predicted = world_from_robot;
   const double unseen_from_s = arrived_s - delay_s_;
   for (size_t i = 0; i < sent_.size(); ++i) {
