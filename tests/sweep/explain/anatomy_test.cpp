@@ -69,6 +69,12 @@ TEST_CASE("A setting without a value of a trial does not count as one") {
   Summarise(result);
   CHECK(Dissect(result).shape_m.n == 3);
   CHECK(Dissect(result).shape_m.mean == Approx((0.03 + 0.06 + 0.105) / 3.0 - 0.025));
+  // A setting of which no trial has a shape, before others that have one.
+  result = Three();
+  result.rows[0].comparison.shape_gap_m = kNan;
+  Summarise(result);
+  CHECK(Dissect(result).shape_m.n == 2);
+  CHECK(Dissect(result).shape_m.mean == Approx((0.06 + 0.09) / 2.0 - 0.025));
 }
 
 TEST_CASE("Each part of the gap is the difference that its name says") {

@@ -121,6 +121,7 @@ TEST_CASE("A value stands out with 60 % of the failures, and a quarter more than
   CHECK(where_of(11, 9, 0, 20) == none);                           // 55 %
   CHECK(where_of(4, 0, 12, 4) == "mostly at surface a (4 of 4)");  // 100 % of usually 80 %
   CHECK(where_of(4, 0, 13, 4) == none);                            // of usually 81 %
+  CHECK(where_of(1, 9, 10, 0) == "mostly at surface b (9 of 10)");
 }
 
 TEST_CASE("Values of a range are no place, and failures without errors are left out") {
@@ -143,9 +144,32 @@ TEST_CASE("Kinds are told apart above a mean silhouette, in which a failure alon
   const double of_pairs = (10.0 / 11.0 + 9.0 / 10.0 + 7.5 / 9.5 + 9.5 / 11.5) / 4.0;
   CHECK(kinds({0.0, 0.01, 0.1, 0.12}, of_pairs - 1e-9) == 2);
   CHECK(kinds({0.0, 0.01, 0.1, 0.12}, of_pairs + 1e-9) == 1);
+  // Three that lie far apart are found where any two of them together would be no kind.
+  CHECK(kinds({0.0, 0.001, 0.1, 0.101, 0.2, 0.201}, 0.9) == 3);
   const double of_one_alone = (9.0 / 10.0 + 8.0 / 9.0 + 0.0) / 3.0;
   CHECK(kinds({0.0, 0.01, 0.1}, of_one_alone - 1e-9) == 2);
   CHECK(kinds({0.0, 0.01, 0.1}, of_one_alone + 1e-9) == 1);
+}
+
+TEST_CASE("Failures that go astray at the first place alone are kinds of their own") {
+  std::vector<TrialRow> rows;
+  for (const double first_m : {0.3, 0.3, -0.3, -0.3}) {
+    rows.push_back(Failure(0.1, 0.0));
+    rows.back().evidence.errors_m.front() = {first_m, 0.0};
+  }
+  const std::vector<FailureCluster> clusters = ClusterFailures(Of(rows));
+  REQUIRE(clusters.size() == 2);
+  CHECK(clusters[0].rows.size() == 2);
+}
+
+TEST_CASE("A value of a list stands out behind a range, too") {
+  SweepResult result = Of({Failure(0.1, 0.0), Failure(0.1, 0.0), Passing(), Passing()});
+  result.parameters.insert(result.parameters.begin(),
+                           experiment::Parameter{.key = "mu", .min = 0.0, .max = 1.0});
+  for (TrialRow& row : result.rows) {
+    row.theta.insert(row.theta.begin(), experiment::ParameterValue{"0.5", 0.5});
+  }
+  CHECK(ClusterFailures(result)[0].sentence.ends_with("; mostly at surface a (2 of 2)"));
 }
 
 TEST_CASE("Kinds are those whose centres have come to rest") {
