@@ -78,7 +78,6 @@ CmaEs::CmaEs(const Space& space, const Eigen::VectorXd& mean, double sigma, int 
   c_1_ = 2.0 / ((n + 1.3) * (n + 1.3) + mu_eff_);
   c_mu_ = std::min(1.0 - c_1_,
                    2.0 * (mu_eff_ - 2.0 + 1.0 / mu_eff_) / ((n + 2.0) * (n + 2.0) + mu_eff_));
-  c_mu_ = std::max(0.0, c_mu_);
   chi_n_ = std::sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
   const auto size = static_cast<Eigen::Index>(numeric_.size());
   covariance_ = axes_ = Eigen::MatrixXd::Identity(size, size);
