@@ -129,7 +129,6 @@ bool IsSettable(const Parameter& parameter) {
 }
 
 double StepOf(const Parameter& parameter) {
-  if (parameter.step) return *parameter.step;
   const double step = OwnStep(parameter).value_or(NiceStep((parameter.max - parameter.min) / 20.0));
   return parameter.is_integer ? std::max(1.0, std::round(step)) : step;
 }
