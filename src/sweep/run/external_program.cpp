@@ -185,7 +185,6 @@ std::string EndOf(const std::string& path, off_t most) {
 [[noreturn]] void Keep(const ProgramStart& start, const std::string& folder, int control,
                        files::Descriptor in, files::Descriptor out) noexcept {
   ::setsid();
-  ::prctl(PR_SET_PDEATHSIG, 0);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
   CloseAllBut({control, in.Number(), out.Number()});
