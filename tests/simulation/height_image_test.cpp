@@ -60,6 +60,13 @@ TEST_CASE("A picture may be 65536 pixels wide or high and no more") {
   CHECK_THROWS_WITH(decode(1, 65537), Catch::StartsWith("not a PNG height image: "));
 }
 
+TEST_CASE("A picture of more pixels than are taken is refused before it is read") {
+  const std::vector<png_byte> pixels(4096 * 4097, 51);
+  CHECK_THROWS_WITH(
+      DecodeHeightImage(Encode(4096, 4097, PNG_FORMAT_GRAY, pixels.data())),
+      Catch::StartsWith("PNG height image: 16781312 pixels: at most 16777216 are taken"));
+}
+
 TEST_CASE("Bytes that are no PNG or end too early are refused") {
   CHECK_THROWS_AS(DecodeHeightImage("hello, this is no picture"), std::runtime_error);
   CHECK_THROWS_AS(DecodeHeightImage(""), std::runtime_error);

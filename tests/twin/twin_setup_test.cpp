@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "rift/hardware/serial_port.hpp"
+#include "rift/statistics/random.hpp"
 #include "rift/twin/options.hpp"
 #include "rift/twin/twin.hpp"
 #include "support/mirror.hpp"
@@ -272,6 +273,33 @@ TEST_CASE("What the twin is told and what it says both take the way of its radio
   const auto rest = robot.Transmit(0.1 + 0.05 + 0.011 + 0.05 + 0.015 + 0.0025);
   CHECK_FALSE(rest.empty());
   CHECK(robot.Transmit(1.0).empty());
+}
+
+TEST_CASE("What the twin's radio loses is drawn for each way by itself, of its seed") {
+  simulation::SimulationOptions options = AsTwin({}, {});
+  options.link.line_loss = 0.4;
+  for (const std::uint64_t seed : {1, 2}) {
+    TwinRobot robot(options, 5.0, {}, seed);
+    ByteChannel there(options.link, statistics::SeedOfStream(seed, 100)),
+        back(options.link, statistics::SeedOfStream(seed, 101));
+    std::vector<int> heard, expected;
+    for (int i = 1; i <= 20; ++i) {
+      const double at_s = 0.2 * i;
+      const hardware::CommandBytes bytes =
+          hardware::Encode(hardware::CommandFrame{static_cast<std::uint8_t>(i), {}});
+      robot.Receive(at_s, bytes);
+      robot.Advance(at_s + 0.19, [](const auto&, const auto&) {});
+      const auto said = robot.Transmit(at_s + 0.19);
+      if (const auto answer = hardware::DecodeAnswer(said)) heard.push_back(*answer->sequence);
+      there.Put(at_s, bytes);
+      if (there.Take(1e9).empty()) continue;
+      back.Put(at_s, hardware::Encode(hardware::Answer{.sequence = 0}));
+      if (!back.Take(1e9).empty()) expected.push_back(i);
+    }
+    INFO(seed);
+    CHECK(heard == expected);
+    CHECK(expected.size() > 2);
+  }
 }
 
 TEST_CASE("A byte's line time follows the baud rate, and a line waits for the one before") {
