@@ -105,6 +105,7 @@ TEST_CASE("The unit at the end of a name is its own, and one that does not fit m
                           {"nanos", "t", "ns"},
                           {"time", "t", ""},
                           {"stamp.nanosec", "nanosec", ""},
+                          {"q.w [rad]", "qw", "rad"},
                           {"yaw_m", "", "m"},
                           {"x_rad", "", "rad"},
                           {"t_mm", "", "mm"},

@@ -108,6 +108,7 @@ TEST_CASE("One column under two signs, units, numbers or orders is one column") 
   refused("t=time,x=py,y=-py", "x and y are both column 'py'");
   refused("t=time,x=py,y=2", "x and y are both column 'py'");
   refused("t=time,x=py:mm,y=py", "x and y are both column 'py'");
+  refused("t=time,x=py:mm,y=-py:cm", "x and y are both column 'py'");
   refused("t=time:ms,x=a,y=time", "t and y are both column 'time'");
   refused("t=time,x=a+b,y=-b+-a", "x and y are both column 'a+b'");
   // A frame turned by an eighth of a turn is one of sums.
@@ -185,6 +186,7 @@ TEST_CASE("A column is named by its number from 1 where no name is so") {
   CHECK(log.poses[0].y_m == 5.0);
   CHECK_THROWS_WITH(Read("0,5,6\n1,7,8\n", "t=1,x=3,y=4"), Contains("there is no such column"));
   CHECK_THROWS_WITH(Read("0,5,6\n1,7,8\n", "t=1,x=3,y=0"), Contains("there is no such column"));
+  CHECK_THROWS_WITH(Read("0,5,6\n1,7,8\n", "t=1,x=3,y=2a"), Contains("there is no such column"));
 }
 
 TEST_CASE("A yaw of a quaternion is its turn about z, tilted ones have roll and pitch too") {

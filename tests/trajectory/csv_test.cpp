@@ -104,6 +104,15 @@ TEST_CASE("Rows are told with their lines; comments are skipped where there is n
         "1: 1 2; a.csv:2: the row has 3 cells where 2 are expected");
 }
 
+TEST_CASE("The lines of a table are its ends of lines and one more, and two millions are taken") {
+  const std::string name = "a.csv";
+  std::string text(1'999'999, '\n');
+  CHECK_NOTHROW(RowReader(text, name, true, ','));
+  text += '\n';
+  CHECK_THROWS_WITH(RowReader(text, name, true, ','),
+                    Catch::StartsWith("a.csv: 2000001 rows: at most 2000000 are taken"));
+}
+
 TEST_CASE("Advice stands beside the refusal of a column that it is of, and of no other") {
   const std::string name = "a.csv";
   for (const size_t advised : {0, 1}) {

@@ -293,6 +293,41 @@ TEST_CASE("A coordinate that jumps between few values is that of a target, x or 
   CHECK(log_with(13, 0.5).empty());
 }
 
+TEST_CASE("A target may jump from the first row to the second and never again") {
+  Trajectory log;
+  for (int i = 0; i < 20; ++i) {
+    log.poses.push_back({.t_s = 0.05 * i, .x_m = i == 0 ? 0.0 : 0.5, .y_m = 0.01 * i});
+  }
+  REQUIRE(Doubts(log).size() == 1);
+  CHECK_THAT(Doubts(log)[0], StartsWith("its x has 2 values only and jumps between them, by up to "
+                                        "0.5 m"));
+}
+
+TEST_CASE("Two rows are enough to doubt units of time and length") {
+  const auto doubt = [](double after_s, double way_m) {
+    const std::vector<std::string> doubts =
+        Doubts({.poses = {{.t_s = 0.0, .x_m = 0.0}, {.t_s = after_s, .x_m = way_m}}});
+    return doubts.size() == 1 ? doubts[0] : "doubts: " + std::to_string(doubts.size());
+  };
+  CHECK(doubt(1.0, 1.0) == "doubts: 0");
+  CHECK_THAT(doubt(5.0, 1.0), StartsWith("its poses are 5 s apart"));
+  CHECK_THAT(doubt(1.0, 50.0), StartsWith("it moves at 50 m/s"));
+}
+
+TEST_CASE("A piece of the way is longer than a thirtieth of what the path spans") {
+  // Every second row is wrong by an eighth of a turn: pieces of one step begin at all rows, those
+  // of two have a wrong one in their middle.
+  const auto doubts = [](int steps) {
+    Trajectory log;
+    for (int i = 0; i <= steps; ++i) {
+      log.poses.push_back({.t_s = 0.05 * i, .x_m = 0.01 * i, .yaw_rad = i % 2 * kPi / 4.0});
+    }
+    return Doubts(log).size();
+  };
+  CHECK(doubts(29) == 0);
+  CHECK(doubts(31) == 1);
+}
+
 TEST_CASE("A robot that lies on its side is a mistake of angles, by roll or by pitch") {
   for (const bool is_roll : {true, false}) {
     const auto tilted = [is_roll](double tilt_rad) {

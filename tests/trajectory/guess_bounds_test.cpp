@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -110,6 +111,15 @@ TEST_CASE("Of columns of one quantity a pose's is taken, then the one of fewest 
   CHECK(GuessWith({"t", "x", "y", "msg.pose.pose.position.x"}, {Clock, X, Y, X}) ==
         "t=t,x=msg.pose.pose.position.x,y=y");
   CHECK(GuessWith({"t", "a.x", "y", "b.x"}, {Clock, X, Y, X}) == "");
+  // A time that does not rise is none, and what comes behind it is looked at.
+  CHECK(GuessWith({"time", "clock", "x", "y"}, {[](int) { return 1.0; }, Clock, X, Y}) ==
+        "t=clock,x=x,y=y");
+}
+
+TEST_CASE("A robot that stands most of the time has the unit of its way while it moves") {
+  CHECK(GuessWith({"t", "x", "y"}, {Clock, [](int i) { return 1e3 * X(std::min(i, 20)); },
+                                    [](int i) { return 1e3 * Y(std::min(i, 20)); }}) ==
+        "t=t,x=x:mm,y=y:mm");
 }
 
 TEST_CASE("A height has the unit of the path, and a tilt that of the yaw") {
@@ -135,6 +145,7 @@ TEST_CASE("A time that no name tells is the first nameless column that rises and
   CHECK(GuessWith({"t", "x", "b"}, {Clock, X, Y}) == "");
   CHECK(GuessWith({"t", "a", "y"}, {Clock, X, Y}) == "");
   CHECK(GuessWith({"t", "2", "3", "4"}, {Clock, [](int) { return 1.0; }, X, Y}) == "t=t,x=3,y=4");
+  CHECK(GuessWith({"1", "2", "t"}, {X, Y, Clock}) == "t=t,x=1,y=2");
   CHECK(GuessWith({"t", "still", "a", "b"}, {Clock, [](int) { return 1.0; }, X, Y}) == "");
 }
 

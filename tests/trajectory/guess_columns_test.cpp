@@ -126,6 +126,7 @@ TEST_CASE("Columns whose names say something else than a place are not taken for
   CHECK(UnclearIn("time,x_ref,y_ref,x_meas,y_meas") ==
         "; x may be x_ref or x_meas, y may be y_ref or y_meas");
   CHECK(UnclearIn("time,vel_x,vel_y,q_x,q_y") == "");
+  CHECK(UnclearIn("time,vel_x,vel_y,x_ref,y_ref") == "; x may be x_ref, y may be y_ref");
   // A time that no name tells is none either.
   CHECK(UnclearIn("frames,x,y,a,b") == "");
 }

@@ -277,6 +277,9 @@ TEST_CASE("A robot stands as long as it is within the radius, turned the short w
   CHECK(standing.y_m == Approx(1.998));
   CHECK(standing.yaw_rad == Approx(3.1));
   CHECK(StandingPose(log, 0.005).x_m == Approx(1.002));
+  const Trajectory apart{.poses = {{.t_s = 0.0, .x_m = 0.0, .y_m = 0.0, .yaw_rad = 0.0},
+                                   {.t_s = 1.0, .x_m = 0.5, .y_m = 0.0, .yaw_rad = 0.0}}};
+  CHECK(StandingPose(apart, 0.5).x_m == 0.25);  // the radius itself is within it
 }
 
 TEST_CASE("A robot turned away from the median of its first five rows by a tenth of a radian") {
@@ -295,6 +298,10 @@ TEST_CASE("A robot turned away from the median of its first five rows by a tenth
     CHECK(yaw_rad(five, 0.2 + side * 0.105) == Approx(0.2));
     CHECK(yaw_rad({0.2, 0.2, 0.2}, 0.2 + side) == Approx(0.2));  // of the first five most stand
     CHECK(yaw_rad({0.2, 0.2}, 0.2 + side) == Approx(0.2 + side));
+    // The first row may be away from the median, and no row that is turned away counts.
+    CHECK(yaw_rad({0.2 + side * 0.06, 0.2, 0.2, 0.2, 0.2}, 0.2 - side * 0.07) ==
+          Approx(0.2 - side * 0.07));
+    CHECK(yaw_rad({0.18, 0.19, 0.2, 0.21, 0.22}, 0.2 + side) == Approx(0.2));
   }
 }
 
