@@ -418,6 +418,33 @@ TEST_CASE("A program's clock runs while what it asked for is in force, and ends 
   CHECK(ends.w == 0.0);
 }
 
+TEST_CASE("A program's decision tells its target's distance, and power ahead and to the left") {
+  ProgramOptions options{.power = 0.5, .laps = 1};
+  options.segments = {{.straight_m = 0.5}, {.turn_deg = 90.0, .radius_m = 0.1}};
+  ProgramController controller(Program(options, Metre(), {}), {});
+  const Decision ahead = controller.Step({10.0, 0.25, 10.0, {0.1, 0.3, 0.0}});
+  CHECK(ahead.waypoint == 1);
+  CHECK(ahead.distance_m == Approx(0.5));
+  CHECK(ahead.v == Approx(0.5));
+  CHECK(ahead.w == 0.0);
+  CHECK_FALSE(ahead.pose_refused);
+  controller.NoteSent(10.0, ahead.power);
+  // A pose that is not believed leaves the one before in force, and the clock running.
+  const Decision turns = controller.Step({11.0, 0.1, 10.02, {0.1, 900.0, 0.0}});
+  CHECK(turns.pose_refused);
+  CHECK(turns.waypoint == 2);
+  CHECK(turns.distance_m == Approx(std::hypot(0.5, 0.2)));
+  CHECK(turns.power.left == Approx(0.0).margin(1e-12));
+  CHECK(turns.power.right == Approx(0.5));
+  CHECK(turns.v == Approx(0.25));
+  CHECK(turns.raw_v == Approx(0.25));
+  CHECK(turns.w == Approx(0.25));
+  CHECK(turns.raw_w == Approx(0.25));
+  // Another power than was asked for stops the clock.
+  controller.NoteSent(11.0, {0.1, 0.1});
+  CHECK(controller.Step({11.3, 0.1, 10.02, {0.1, 0.3, 0.0}}).power == turns.power);
+}
+
 TEST_CASE("A task begins where its program or its first waypoint is, and ideal paths follow both") {
   Task way;
   way.waypoints = {{.name = "s", .x_m = 1.0, .heading_deg = 90.0},

@@ -110,9 +110,9 @@ TEST_CASE("A pull that a circle alone tells may be another gain, and that is sai
   }
 }
 
-/// Ten seconds at v 0.3 and a steering that changes every 0.35 s, which the robot answers 0.1 s
-/// later by `gain` for each unit of w, and `bias_rad_s` beside it.
-TrialResult Weaving(double gain, double bias_rad_s) {
+/// Ten seconds at v 0.3 and a steering that changes every 0.35 s, which the robot answers so
+/// much later by `gain` for each unit of w, and `bias_rad_s` beside it.
+TrialResult Weaving(double gain, double bias_rad_s, double delay_s = 0.1) {
   const double steering[] = {0.1, -0.05, 0.15, 0.0, -0.12, 0.05, 0.2, -0.15};
   const auto steering_at = [&](double t_s) {
     return t_s < 0.0 ? 0.0 : steering[static_cast<size_t>(t_s / 0.35) % 8];
@@ -131,7 +131,7 @@ TrialResult Weaving(double gain, double bias_rad_s) {
       result.trajectory.poses.push_back(
           {.t_s = t_s, .x_m = 0.15 * t_s, .yaw_rad = geometry::WrapToPi(yaw_rad)});
     }
-    yaw_rad += kStep_s * (gain * steering_at(kStep_s * (i + 0.5) - 0.1) + bias_rad_s);
+    yaw_rad += kStep_s * (gain * steering_at(kStep_s * (i + 0.5) - delay_s) + bias_rad_s);
   }
   return result;
 }
@@ -149,6 +149,11 @@ TEST_CASE("Gain, pull and delay of a weaving run are those it was made with, to 
     CHECK(found.model.speed_mps == Approx(0.5).epsilon(0.03));
     CHECK(found.r2 > 0.98);
   }
+}
+
+TEST_CASE("A delay of the commands is looked for up to a second") {
+  CHECK(Of(Weaving(10.0, 0.0, 0.97)).model.command_delay_s == Approx(0.97).margin(0.01));
+  CHECK(Of(Weaving(10.0, 0.0, 1.3)).model.command_delay_s <= 1.0);
 }
 
 TEST_CASE("Steering is told to be reversed of a run that turned away by a quarter and was late") {

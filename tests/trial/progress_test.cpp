@@ -117,6 +117,20 @@ TEST_CASE("In less than half a second a robot that stands moves by as much less"
   CHECK_FALSE(is_standing(1.0, 0.025));
 }
 
+TEST_CASE("A run is the same whatever its clock begins with, and may have two poses") {
+  TrialResult run = RunOf(31, 1, [](double t_s) { return StampedPose{.x_m = 0.1 * t_s}; });
+  for (StampedPose& pose : run.trajectory.poses) pose.t_s += 50.0;
+  const Progress progress = ProgressOf(run, kTask);
+  CHECK(progress.took_s == Approx(3.0));
+  CHECK(progress.last_s == Approx(1.0));
+  CHECK(progress.nearing_mps == Approx(0.1));
+
+  run.trajectory.poses = {run.trajectory.poses.front(), run.trajectory.poses.back()};
+  const Progress of_two = ProgressOf(run, kTask);
+  CHECK(of_two.last_s == Approx(3.0));
+  CHECK(of_two.nearing_mps == Approx(0.1));
+}
+
 TEST_CASE("A run of two poses at one time has no speed") {
   TrialResult run = RunOf(2, 1, [](double) { return StampedPose{}; });
   run.trajectory.poses[1].t_s = 0.0;

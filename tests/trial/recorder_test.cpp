@@ -91,6 +91,10 @@ TEST_CASE("A drive begins with the first power of either wheel") {
     recorder.Sent(1.2, {0.3, 0.3});
     CHECK(recorder.result().driving_s == 1.1);
     CHECK(recorder.result().commands.size() == 3);
+    Recorder at_once(kTask, 0.0);
+    at_once.Sent(0.0, side.Of<control::WheelPower>(0.2, 0.0));
+    at_once.Sent(0.1, {0.3, 0.3});
+    CHECK(at_once.result().driving_s == 0.0);
   });
 }
 

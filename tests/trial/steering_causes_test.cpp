@@ -242,12 +242,20 @@ TEST_CASE("Stale decisions are told with the age of the poses, or with the pause
         "70 % of the decisions were zero power: poses are 0.25 s old when they come in, but then "
         "none came for so long that the last one was older than trial.pose_stale_s, 0.46 s");
   CHECK(std::isnan(ProposedFor(pauses, "trial.pose_stale_s")));
+  CHECK(pauses.causes.size() == 1);
+  CHECK(ProposedFor(found(0.448, 300), "trial.pose_stale_s") == 0.54);
+  CHECK(std::isnan(ProposedFor(found(0.452, 300), "trial.pose_stale_s")));
   CHECK(found(0.44, 0).causes[0] ==
         "all 700 decisions were zero power: poses are 0.25 s old when they come in, and "
         "trial.pose_stale_s is 0.44 s: make the camera faster, or this longer");
   CHECK(found(0.46, 0).causes[0] ==
         "all 700 decisions were zero power: poses are 0.25 s old when they come in, but then none "
         "came for so long that the last one was older than trial.pose_stale_s, 0.46 s");
+  // As many as those that drove, and whatever the clock begins with.
+  CHECK_FALSE(found(0.46, 700).causes.empty());
+  for (trajectory::StampedPose& pose : run.trajectory.poses) pose.t_s += 50.0;
+  CHECK(std::isnan(ProposedFor(found(0.452, 300), "trial.pose_stale_s")));
+  CHECK(ProposedFor(found(0.448, 300), "trial.pose_stale_s") == 0.54);
 }
 
 }  // namespace
