@@ -26,7 +26,7 @@ set_tests_properties([==[drive:A robot under way is driven on and stopped when n
 set_tests_properties([==[drive:A log that finds no room stops the robot first and keeps its rows]==] PROPERTIES COST 9)
 set_tests_properties([==[drive:A drive without display, home and locale, with a clock that jumps, arrives]==] PROPERTIES COST 9)
 set_tests_properties([==[drive:A drive in a terminal of 20 columns is started by Enter and its lines fit]==] PROPERTIES COST 9)
-set_tests_properties([==[camera_sessions:A disk that hangs stops the drive after a second and nobody waits for it]==] PROPERTIES COST 9)
+set_tests_properties([==[camera_sessions:A disk that hangs stops the drive after four seconds and nobody waits for it]==] PROPERTIES COST 9)
 set_tests_properties([==[drive:A disk that becomes full stops the robot first and keeps whole rows]==] PROPERTIES COST 9)
 set_tests_properties([==[commands:Each fault of a program is a row with its reason, and no process is left]==] PROPERTIES COST 9)
 set_tests_properties([==[commands:A persistent program that fails is started again for the next trial]==] PROPERTIES COST 9)

@@ -1,9 +1,12 @@
 #include "sessions/drive/log.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <future>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "hardware/bench.hpp"
 #include "rift/files/files.hpp"
@@ -222,28 +225,38 @@ TEST_CASE("A file that cannot grow stops the drive and ends with a whole row") {
   }
 }
 
-TEST_CASE("A disk that hangs stops the drive after a second and nobody waits for it") {
+TEST_CASE("A disk that hangs stops the drive after four seconds and nobody waits for it") {
   std::promise<void> answer;
   const std::shared_future<void> disk = answer.get_future().share();
   std::string failure;
   {
-    DriveLog log([disk](const DriveRows& rows, std::atomic<unsigned>&) {
-      if (!rows.trajectory.empty()) disk.wait();
+    const auto is_hanging = std::make_shared<std::atomic<bool>>(false);  // the thread outlives this
+    DriveLog log([disk, is_hanging](const DriveRows& rows, std::atomic<unsigned>&) {
+      if (rows.trajectory.empty()) return;
+      *is_hanging = true;
+      disk.wait();
     });
     const hardware::Stopper stopper = log.Stopper();
     Record(log, 1.0);
+    test::WaitUntil("the disk hangs", [&] { return is_hanging->load(); });
     const auto start = steady_clock::now();
     double longest_s = 0.0;
+    int asked = 0;
     test::WaitUntil("the drive is stopped", [&] {
       const auto before = steady_clock::now();
       Record(log, 2.0);
       longest_s = std::max(longest_s, Since_s(before));
+      std::this_thread::sleep_for(std::chrono::milliseconds(51));
+      ++asked;
       return stopper().has_value();
     });
     CHECK(Since_s(start) > 3.9);
+    // A turn counts for a twentieth of a second at most; the first one has none before it.
+    CHECK(asked >= 81);
+    CHECK(asked <= 82);
     CHECK(longest_s < 2.0);  // it waits for no disk
     CHECK(stopper()->first == hardware::StopReason::kLogFailed);
-    CHECK_THAT(stopper()->second, Catch::Contains("has not been written for 4.0 s"));
+    CHECK_THAT(stopper()->second, Catch::Contains("has not been written for 4."));
     failure = log.Close({});
   }
   CHECK(failure == "its disk has not answered for 5 s");

@@ -359,6 +359,23 @@ TEST_CASE("A scene that says where it is goes on until it is no longer needed") 
   CHECK(::kill(std::stoi(files::ReadFile(folder / "pid")), 0) != 0);
 }
 
+TEST_CASE("What a scene command has started may tidy up after it has ended itself") {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder / "scene", "(trap 'sleep 0.2; echo done > " + folder / "tidy" +
+                                        "; exit' TERM\n"
+                                        "echo 1 > " +
+                                        folder / "ready" +
+                                        "\nwhile :; do sleep 0.01; done) &\n"
+                                        "trap exit TERM\n"
+                                        "echo '{\"port\": \"/dev/p\"}'\n"
+                                        "while :; do sleep 0.01; done\n");
+  {
+    const SceneCommand scene({"sh", folder / "scene"});
+    test::WaitUntil("it can be told", [&] { return fs::exists(folder / "ready"); });
+  }
+  test::WaitUntil("it has tidied up", [&] { return fs::exists(folder / "tidy"); });
+}
+
 TEST_CASE("A scene that was reset needs no address and one that fails ends the series") {
   CHECK_FALSE(SceneCommand({"true"}).address());
   CHECK_THROWS_WITH(SceneCommand({"false"}), Catch::Contains("false ended with 1"));
