@@ -62,6 +62,16 @@ TEST_CASE("The corners that were found are green where they are in the picture")
   CHECK(drawn.width == Approx(180.0 / 1.5 + 6.0).margin(3.0));
 }
 
+TEST_CASE("Bars stand on a panel through which three tenths of the picture are seen") {
+  Shot shot;
+  const cv::Mat drawn = DrawCalibrating(shot.scene);
+  // Of grey 30 and of the panel's 32, 28, 26.
+  CHECK(drawn.at<cv::Vec3b>(1, 1275) == cv::Vec3b(31, 29, 27));
+  CHECK(drawn.at<cv::Vec3b>(87, 1275) == cv::Vec3b(31, 29, 27));
+  CHECK(drawn.at<cv::Vec3b>(88, 1275) == cv::Vec3b::all(30));
+  CHECK(drawn.at<cv::Vec3b>(87, 1089) == cv::Vec3b::all(30));
+}
+
 TEST_CASE("A bar is as long as its coverage, yellow until it is enough") {
   Shot shot;
   const cv::Rect bars(1090, 0, 190, 90);
@@ -101,6 +111,35 @@ TEST_CASE("Before the first picture there is a window with the advice all the sa
   cv::Mat differs;
   cv::extractChannel(empty != DrawCalibrating(shot.scene), differs, 1);
   CHECK(cv::countNonZero(differs) > 100);
+}
+
+TEST_CASE("When all is covered more views are asked for, as long as there are too few of them") {
+  Shot shot;
+  shot.taken.resize(2);
+  // The second line: "everything is covered", and with it what to do, which is longer by half.
+  const auto width_px = [&](int good_views) {
+    shot.scene.good_views = good_views;
+    cv::Mat letters;
+    cv::inRange(DrawCalibrating(shot.scene)(cv::Rect(0, 27, 1000, 18)), cv::Scalar::all(150),
+                cv::Scalar::all(255), letters);
+    std::vector<cv::Point> pixels;
+    cv::findNonZero(letters, pixels);
+    return cv::boundingRect(pixels).width;
+  };
+  CHECK(width_px(1) > 100);
+  CHECK(width_px(2) == width_px(1));
+  CHECK(width_px(3) > 1.5 * width_px(2));
+}
+
+TEST_CASE("The corners of views that were taken are blue") {
+  Shot shot;
+  shot.taken.resize(1);
+  shot.taken[0].corners = {{600.0, 600.0}};
+  const cv::Rect around(390, 390, 20, 20);
+  const cv::Rect drawn = Around(DrawCalibrating(shot.scene), cv::Scalar(235, 140, 60), around);
+  CHECK((drawn.tl() + drawn.br()).x / 2.0 == Approx(400.0).margin(1.0));
+  CHECK((drawn.tl() + drawn.br()).y / 2.0 == Approx(400.0).margin(1.0));
+  CHECK_FALSE(drawn.empty());
 }
 
 }  // namespace

@@ -332,5 +332,27 @@ TEST_CASE("Letters that the font does not have are question marks, one for each"
   CHECK(cv::norm(marked, titled("a?b ?c?"), cv::NORM_INF) > 0.0);
 }
 
+TEST_CASE("The robot, its wheels, its path and its powers have their colours") {
+  Run run = StraightRun();
+  run.reference_m = {{0.0, -0.1}, {0.4, -0.1}};
+  const Shot shot(run);
+  const Layout& layout = shot.painter.layout();
+  const auto count = [&](const cv::Rect& part, const cv::Scalar& colour) {
+    return cv::countNonZero(Pixels(shot.picture, part, colour));
+  };
+  CHECK(count(layout.side, cv::Scalar(205, 226, 205)) > 15);   // the chassis
+  CHECK(count(layout.side, cv::Scalar(70, 66, 62)) > 15);      // a wheel
+  CHECK(count(layout.top, cv::Scalar(0, 0, 0)) > 15);          // the path
+  CHECK(count(layout.panel, cv::Scalar(214, 210, 206)) > 15);  // the bars of powers
+}
+
+TEST_CASE("Level ground is pale") {
+  Run run = StraightRun();
+  run.height_at = [](double, double) { return 0.01; };
+  const Shot shot(run, 0);
+  CHECK(shot.picture.at<cv::Vec3b>(cv::Point(shot.painter.layout().TopPixel({0.1, 0.09}))) ==
+        cv::Vec3b(236, 240, 240));
+}
+
 }  // namespace
 }  // namespace rift::view

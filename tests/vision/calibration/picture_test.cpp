@@ -81,5 +81,21 @@ TEST_CASE("A picture says whether the error on the floor is known") {
   CHECK(cv::norm(drawn, expected, cv::NORM_INF) == 0.0);
 }
 
+TEST_CASE("A picture of a calibration has the colours of its legend, to the last grey value") {
+  Calibration calibration;
+  calibration.coverage.x = 1.0;
+  calibration.views = {Seen("left out", {900.0, 300.0}, 1.5)};
+  calibration.views[0].used = false;
+  const test::TemporaryFolder folder;
+  DrawCalibration(calibration, folder / "drawn.png");
+  const cv::Mat drawn = cv::imread(folder / "drawn.png");
+  const auto at = [&](int x, int y) { return drawn.at<cv::Vec3b>(y, x); };
+  CHECK(at(5, 5) == cv::Vec3b(252, 252, 252));    // paper
+  CHECK(at(20, 70) == cv::Vec3b(170, 165, 160));  // the frame of the map, and what is in it
+  CHECK(at(25, 75) == cv::Vec3b(240, 238, 236));
+  CHECK(at(1002, 80) == cv::Vec3b(90, 160, 60));   // the bar of x
+  CHECK(at(1002, 234) == cv::Vec3b(50, 60, 210));  // of the view that is left out
+}
+
 }  // namespace
 }  // namespace rift::vision
