@@ -188,7 +188,9 @@ TEST_CASE("A picture without light is black, judged as often as pictures are loo
   Session session({.black_level = 40.0, .look_s = 0.2});
   const double begin_s = SteadyNow_s();
   session.script.Give(40, begin_s);
-  CHECK(session.After(1).state == CameraState::kRunning);
+  const CaptureStatus just = session.After(1);
+  CHECK(just.state == CameraState::kRunning);
+  CHECK(just.reason.empty());
   session.script.Give(39, begin_s + 0.1);  // not looked at yet
   CHECK(session.After(2).state == CameraState::kRunning);
   session.script.Give(38, begin_s + 0.21);
