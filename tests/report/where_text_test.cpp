@@ -1,6 +1,7 @@
 // "Where does it fail?": what is said where no trial has a gap, and where no value stands out.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tuple>
 
 #include "rift/report/text/findings.hpp"
 #include "rift/report/text/text.hpp"
@@ -305,6 +306,32 @@ TEST_CASE("Suggestions are numbered, and where there are none it is said why") {
   CHECK_THAT(ExplanationText(result, explanation, true),
              Catch::EndsWith("\nnext experiments on the robot, the best first:\n1. first: a\n2. "
                              "second: b\n\nnone is worth a trial\n"));
+}
+
+TEST_CASE("Of two parameters that are nearly as far apart the one that is farther is told") {
+  // Of thirty trials of each setting so many fail: values of a are 22 of 60 apart, those of b 20.
+  for (const bool is_a : {true, false}) {
+    sweep::SweepResult result;
+    for (const char* name : {"a", "b"}) {
+      result.parameters.push_back(
+          {.key = name, .levels = {synthetic::Numeric("0"), synthetic::Numeric("1")}});
+    }
+    for (const auto& [first, second, failures] :
+         {std::tuple{0, 0, 25}, {0, 1, 10}, {1, 0, 9}, {1, 1, 4}}) {
+      for (int trial = 0; trial < 30; ++trial) {
+        const auto& a = result.parameters[0].levels[is_a ? first : second];
+        const auto& b = result.parameters[1].levels[is_a ? second : first];
+        result.rows.push_back(
+            synthetic::Row({a, b}, std::to_string(trial), trial < failures ? 0.09 : 0.02));
+      }
+    }
+    sweep::Summarise(result);
+    std::string text;
+    for (const Finding& finding : Findings(result, {})) {
+      for (const Sentence& sentence : finding.sentences) text += sentence.Text() + "\n";
+    }
+    CHECK_THAT(text, Catch::Contains(is_a ? "Most often at a 0 (35" : "Most often at b 0 (35"));
+  }
 }
 
 }  // namespace
