@@ -215,6 +215,7 @@ TEST_CASE("Wrong input: rift gap") {
       {"gap" + kLogs + "%data/example/robot1.csv", "name it once"},
       {"gap" + kLogs + "--figur @x.svg", "did you mean --figure?"},
       {"gap" + kLogs + "--figure @x.pdf", "must end in .svg or .png"},
+      {"gap" + kLogs + "--profile @x.csv --figure @x.pdf", "must end in .svg or .png"},
       {"gap" + kLogs + "--figure @gone/x.svg", "mend the name, or make the folder"},
       {"gap" + kLogs + "--figure @there.svg", "give --force to replace it"},
       {"gap" + kLogs + "--json @there.json", "give --force to replace it"},

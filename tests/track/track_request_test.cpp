@@ -162,6 +162,8 @@ TEST_CASE("A sheet to print is one tag or one board in an SVG, and nothing else 
     asked.Refuses("is there already", [](TrackRequest&) {});
     asked.request.job.force = true;
     CHECK_NOTHROW(asked.request.Check());
+    asked.request.job.ids = {3};  // a single tag may be said
+    CHECK_NOTHROW(asked.request.Check());
   }
 }
 
