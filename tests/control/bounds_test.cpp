@@ -189,6 +189,48 @@ TEST_CASE("The slew limit holds each wheel by itself, up and down") {
   CHECK(decision.limits.slew);
   navigator.NoteSent(0.0, {0.4, 0.4});
   CHECK_FALSE(navigator.Step({0.05, 0.05, 0.05, {0.0, 0.0, 0.0}}).limits.slew);
+  navigator.NoteSent(0.05, {0.1, 0.35});
+  const Decision rises = navigator.Step({0.1, 0.05, 0.1, {0.0, 0.0, 0.0}});
+  CHECK(rises.power.left == Approx(0.2));
+  CHECK(rises.power.right == Approx(0.4));
+}
+
+TEST_CASE("The slew limit changes nothing of powers that stay, different as they are") {
+  NavigatorOptions options = Plain();
+  const std::vector<Waypoint> way{{.name = "s", .x_m = -1.0},
+                                  {.name = "t", .x_m = 0.4, .y_m = 0.25, .stop = true}};
+  const PoseInput input{0.0, 0.05, 0.0, {0.0, 0.0, 0.0}};
+  const WheelPower wanted = Navigator(options, way).Step(input).power;
+  REQUIRE(wanted.right - wanted.left > 0.3);
+  options.slew_rate_per_s = 2.0;
+  Navigator navigator(options, way);
+  navigator.NoteSent(-0.05, wanted);
+  const Decision decision = navigator.Step(input);
+  CHECK(decision.power == wanted);
+  CHECK_FALSE(decision.limits.slew);
+}
+
+TEST_CASE("A pose that is seen again is as old as when it came in") {
+  NavigatorOptions options = Plain();
+  options.latency.delay_s = 0.3;
+  options.latency.drive.wheel_radius_m = 0.1;
+  options.latency.drive.full_power_speed_rad_s = 10.0;  // 1 m/s at full power
+  Navigator navigator(options, {{.name = "s", .x_m = -1.0}, {.name = "t", .x_m = 2.0}});
+  navigator.NoteSent(0.0, {0.5, 0.5});
+  CHECK(navigator.Step({1.0, 0.05, 0.9, {0.0, 0.0, 0.0}}).distance_m == Approx(2.0 - 0.15));
+  CHECK(navigator.Step({1.2, 0.05, 0.9, {0.0, 0.0, 0.0}}).distance_m == Approx(2.0 - 0.25));
+  CHECK(navigator.Step({1.3, 0.05, 1.25, {0.0, 0.0, 0.0}}).distance_m == Approx(2.0 - 0.15));
+}
+
+TEST_CASE("A drive has lengths and a speed that are finite and above zero, or is refused") {
+  for (const double wrong : {0.0, -1.0, kNan, HUGE_VAL}) {
+    CHECK_THROWS_WITH(DiffDrive({.wheel_radius_m = wrong}),
+                      Catch::StartsWith("wheel_radius_m is ") &&
+                          Catch::EndsWith("and it must be finite and above zero"));
+    CHECK_THROWS_WITH(DiffDrive({.track_m = wrong}), Catch::StartsWith("track_m is "));
+    CHECK_THROWS_WITH(DiffDrive({.full_power_speed_rad_s = wrong}),
+                      Catch::StartsWith("full_power_speed_rad_s is "));
+  }
 }
 
 TEST_CASE("Waypoints lie within a kilometre, with a heading that is a number") {
@@ -214,6 +256,12 @@ TEST_CASE("Waypoints lie within a kilometre, with a heading that is a number") {
         Pose2{1.0, 2.0, geometry::WrapToPi(RadFromDeg(270.0))});
   CHECK(StartPose({{.name = "s", .x_m = 1.0}, {.name = "t", .x_m = 1.0, .y_m = -2.0}}).yaw_rad ==
         Approx(RadFromDeg(-90.0)));
+  const Pose2 start = StartPose({{.name = "s", .x_m = 1.0, .y_m = 2.0}, {.name = "t"}});
+  CHECK(start.x_m == 1.0);
+  CHECK(start.y_m == 2.0);
+  CHECK_THROWS_AS(StartPose({{.name = "s"}}), std::invalid_argument);
+  CHECK_THROWS_WITH(CheckWaypoints({{.name = "s", .x_m = 1000.1}, {.name = "t"}}),
+                    "waypoint 1 's' at x 1000.1, y 0, heading 0 must be finite and within 1000 m");
 }
 
 TEST_CASE("Options outside their range, or in the wrong order, are refused by name and value") {
@@ -355,6 +403,15 @@ TEST_CASE("A program's pieces have their powers, lengths and times, to either si
   CHECK(times.back() == Approx(program.Duration_s()));
   CHECK(times[1] == Approx(0.5));
   for (size_t i = 1; i < times.size(); ++i) CHECK(times[i] - times[i - 1] <= 0.5 + 1e-12);
+  CHECK(program.Times(100.0).size() == 6);  // the ends of its pieces
+}
+
+TEST_CASE("The most power of a program is that of its faster wheel, to either side") {
+  for (const double turn_deg : {90.0, -90.0}) {
+    ProgramOptions options{.power = 0.25, .laps = 1};
+    options.segments = {{.turn_deg = turn_deg, .radius_m = 0.3}};
+    CHECK(Program(options, Metre(), {}).MostPower() == Approx(0.25));
+  }
 }
 
 TEST_CASE("A program faster than the wheels, or a segment of two kinds, is refused") {
@@ -464,6 +521,24 @@ TEST_CASE("A task begins where its program or its first waypoint is, and ideal p
   CHECK(task.Start() == Pose2{1.0, 2.0, RadFromDeg(90.0)});
   CHECK(task.IdealPath().back().world_from_robot.y_m == Approx(3.0));
   CHECK(task.IdealPath()[1].captured_s == Approx(0.02));
+  CHECK(program.waypoints()[0].x_m == 1.0);
+  CHECK(program.waypoints()[0].y_m == 2.0);
+  CHECK(program.waypoints()[0].heading_deg.value() == Approx(90.0));
+}
+
+TEST_CASE(
+    "A task's controller is a program's or steers to waypoints, of options that are checked") {
+  Task way, task;
+  way.waypoints = {{.name = "s"}, {.name = "t", .x_m = 1.0}};
+  ProgramOptions options{.power = 0.5, .laps = 1};
+  options.segments = {{.straight_m = 0.5}};
+  task.program = Program(options, Metre(), {});
+  CHECK(dynamic_cast<Navigator*>(MakeController(way, {}).get()) != nullptr);
+  CHECK(dynamic_cast<ProgramController*>(MakeController(task, {}).get()) != nullptr);
+  NavigatorOptions wrong;
+  wrong.v_max = 1.1;
+  CHECK_THROWS_AS(MakeController(way, wrong), std::invalid_argument);
+  CHECK_THROWS_AS(MakeController(task, wrong), std::invalid_argument);
 }
 
 }  // namespace
