@@ -1,4 +1,5 @@
-// A calibration beside what an implementation of its own in NumPy gives for the same runs.
+// A calibration beside what an implementation of its own in NumPy, oracle/make.py, gives for the
+// same runs.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <utility>
