@@ -15,7 +15,7 @@
 #include "rift/trajectory/log.hpp"
 #include "sessions/drive/folder.hpp"
 #include "support/inputs/paper_camera.hpp"
-#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/paper_experiment.hpp"
 #include "support/processes/file_size_limit.hpp"
 #include "support/processes/process.hpp"
 #include "support/until.hpp"
@@ -27,14 +27,6 @@ using std::chrono::steady_clock;
 
 double Since_s(steady_clock::time_point start) {
   return std::chrono::duration<double>(steady_clock::now() - start).count();
-}
-
-experiment::Experiment PaperExperiment() {
-  experiment::Experiment experiment;
-  experiment.name = "bench";
-  experiment.waypoints = test::PaperWaypoints();
-  experiment.trial.pace = trial::Pace::kNewPose;
-  return experiment;
 }
 
 hardware::DriveRun DriveOnBench(const experiment::Experiment& experiment,
@@ -57,7 +49,7 @@ hardware::DriveRun DriveOnBench(const experiment::Experiment& experiment,
 TEST_CASE("The files that grew during a drive are those of its whole record to the byte") {
   const auto protocol = GENERATE(hardware::Protocol::kFramed, hardware::Protocol::kPlain);
   const test::TemporaryFolder folder;
-  const experiment::Experiment experiment = PaperExperiment();
+  const experiment::Experiment experiment = test::PaperExperiment();
   DriveLog log(WriterInto(folder.Path(), experiment));
   const hardware::DriveRun run = DriveOnBench(experiment, protocol, log);
   REQUIRE(run.trial.trajectory.poses.size() > 30);
@@ -84,7 +76,7 @@ size_t Lines(const std::filesystem::path& path) {
 
 TEST_CASE("Rows are on disk a moment after they were recorded and the summary says interrupted") {
   const test::TemporaryFolder folder;
-  DriveLog log(WriterInto(folder.Path(), PaperExperiment()));
+  DriveLog log(WriterInto(folder.Path(), test::PaperExperiment()));
   const hardware::Stopper stopper = log.Stopper();
   CHECK_FALSE(std::filesystem::exists(folder / "trajectory.csv"));  // no drive has begun
   double quickest_s = 60.0;  // a disk that others keep busy takes seconds for some of them
@@ -107,7 +99,7 @@ TEST_CASE("Rows are on disk a moment after they were recorded and the summary sa
 
 TEST_CASE("A drive that never began leaves no files of a run") {
   const test::TemporaryFolder folder;
-  { const DriveLog log(WriterInto(folder.Path(), PaperExperiment())); }
+  { const DriveLog log(WriterInto(folder.Path(), test::PaperExperiment())); }
   CHECK(std::filesystem::is_empty(folder.Path()));
 }
 
@@ -116,8 +108,8 @@ TEST_CASE("The files are made when they are asked for, and go again when no driv
   const test::TemporaryFolder folder;
   {
     BegunFolder begun(folder.Path() / "run");
-    DriveLog log(WriterInto(folder.Path() / "run", PaperExperiment()));
-    begun.Write(PaperExperiment(), test::PaperCamera());
+    DriveLog log(WriterInto(folder.Path() / "run", test::PaperExperiment()));
+    begun.Write(test::PaperExperiment(), test::PaperCamera());
     test::WaitUntil("the files are there", [&] { return log.IsReady(); });
     CHECK_FALSE(log.Stopper()());
     for (const char* name : {"experiment.yaml", "camera.yaml", "summary.json", "trajectory.csv",
@@ -136,7 +128,7 @@ TEST_CASE("A file that cannot be made is told before a robot may move") {
   const std::string mine = "my own notes";
   test::WriteText(folder / "commands.csv", mine);
   {
-    DriveLog log(WriterInto(folder.Path(), PaperExperiment()));
+    DriveLog log(WriterInto(folder.Path(), test::PaperExperiment()));
     const hardware::Stopper stopper = log.Stopper();
     test::WaitUntil("the drive is stopped", [&] {
       CHECK_FALSE(log.IsReady());
@@ -161,7 +153,7 @@ TEST_CASE("A folder that holds any file of a run is refused with its name and le
                         .ask = [](const std::string&, std::string_view) { return 'q'; }};
     DriveSession session({.address = {"/dev/none", "none", folder / name}, .yes = true}, quiet);
     CHECK_THROWS_WITH(
-        session.DriveInto(folder.Path(), PaperExperiment()),
+        session.DriveInto(folder.Path(), test::PaperExperiment()),
         Catch::StartsWith(folder.Path().string() + " holds a run already, or part of one: ") &&
             Catch::Contains(name + std::string(" is there")));
     CHECK(files::ReadFile(folder / name) == "mine");
@@ -176,7 +168,7 @@ TEST_CASE("A folder that vanishes during a drive stops it") {
   const test::TemporaryFolder folder;
   const std::filesystem::path run = folder / "run";
   std::filesystem::create_directory(run);
-  DriveLog log(WriterInto(run, PaperExperiment()));
+  DriveLog log(WriterInto(run, test::PaperExperiment()));
   const hardware::Stopper stopper = log.Stopper();
   Record(log, 1.0);
   test::WaitUntil("the files are there", [&] { return Lines(run / "encoders.csv") == 2; });
@@ -195,7 +187,7 @@ TEST_CASE("A folder that vanishes during a drive stops it") {
 
 TEST_CASE("A folder that vanishes before a drive stops it and is not made again") {
   const test::TemporaryFolder folder;
-  DriveLog log(WriterInto(folder.Path() / "run", PaperExperiment()));
+  DriveLog log(WriterInto(folder.Path() / "run", test::PaperExperiment()));
   const hardware::Stopper stopper = log.Stopper();
   Record(log, 1.0);
   test::WaitUntil("the drive is stopped", [&] { return stopper().has_value(); });
@@ -206,7 +198,7 @@ TEST_CASE("A folder that vanishes before a drive stops it and is not made again"
 TEST_CASE("A file that cannot grow stops the drive and ends with a whole row") {
   std::signal(SIGXFSZ, SIG_IGN);  // as in the program (terminal/process_start.hpp)
   const test::TemporaryFolder folder;
-  DriveLog log(WriterInto(folder.Path(), PaperExperiment()));
+  DriveLog log(WriterInto(folder.Path(), test::PaperExperiment()));
   const hardware::Stopper stopper = log.Stopper();
   {
     const test::FileSizeLimit limit(1000);

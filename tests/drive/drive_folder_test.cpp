@@ -10,25 +10,17 @@
 #include "sessions/drive/folder.hpp"
 #include "support/documented.hpp"
 #include "support/inputs/paper_camera.hpp"
-#include "support/inputs/paper_waypoints.hpp"
+#include "support/inputs/paper_experiment.hpp"
 #include "support/processes/process.hpp"
 
 namespace rift::sessions {
 namespace {
 
-experiment::Experiment PaperExperiment() {
-  experiment::Experiment experiment;
-  experiment.name = "bench";
-  experiment.waypoints = test::PaperWaypoints();
-  experiment.trial.pace = trial::Pace::kNewPose;
-  return experiment;
-}
-
 TEST_CASE("A drive reaches the end and leaves a folder that tells all of it") {
   hardware::Bench bench;
   bench.line_delay_s = 0.005;
   std::vector<std::string> told;
-  const experiment::Experiment experiment = PaperExperiment();
+  const experiment::Experiment experiment = test::PaperExperiment();
   const test::TemporaryFolder folder;
   BegunFolder begun(folder.Path());
   begun.Write(experiment, test::PaperCamera());
