@@ -6,7 +6,10 @@
 #include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "hardware/bench.hpp"
 #include "rift/files/files.hpp"
@@ -234,21 +237,23 @@ TEST_CASE("A disk that hangs stops the drive after four seconds and nobody waits
     const auto start = steady_clock::now();
     double longest_s = 0.0;
     int asked = 0;
+    std::optional<std::pair<hardware::StopReason, std::string>> stop;
     test::WaitUntil("the drive is stopped", [&] {
       const auto before = steady_clock::now();
       Record(log, 2.0);
       longest_s = std::max(longest_s, Since_s(before));
       std::this_thread::sleep_for(std::chrono::milliseconds(51));
       ++asked;
-      return stopper().has_value();
+      stop = stopper();
+      return stop.has_value();
     });
     CHECK(Since_s(start) > 3.9);
     // A turn counts for a twentieth of a second at most; the first one has none before it.
     CHECK(asked >= 81);
     CHECK(asked <= 82);
     CHECK(longest_s < 2.0);  // it waits for no disk
-    CHECK(stopper()->first == hardware::StopReason::kLogFailed);
-    CHECK_THAT(stopper()->second, Catch::Contains("has not been written for 4."));
+    CHECK(stop->first == hardware::StopReason::kLogFailed);
+    CHECK_THAT(stop->second, Catch::Contains("has not been written for 4.0 s"));
     failure = log.Close({});
   }
   CHECK(failure == "its disk has not answered for 5 s");
