@@ -341,8 +341,9 @@ void ExternalProgram::TakeArrived() {
 const std::string& ExternalProgram::UnreadAtNextLine(char first, int most_ms) {
   using Clock = std::chrono::steady_clock;
   constexpr int kQuickLooks = 100;  // some 50 us: most programs read on at once
-  if (!has_begun_line_)
+  if (!has_begun_line_) {
     has_begun_line_ = ::send(to_program_.Number(), &first, 1, MSG_NOSIGNAL) == 1;
+  }
   const Clock::time_point end = Clock::now() + std::chrono::milliseconds(most_ms);
   for (int look = 0; most_ms < 0 || Clock::now() < end; ++look) {
     int on_its_way = 0;  // bytes, and what they cost
