@@ -1,4 +1,5 @@
-// The numbers of a sweep's documents beside those that follow from its rows by plain loops.
+// The numbers of a sweep's documents beside those that follow from its rows by plain loops, and
+// those of tests/report/oracle/make.py, which knows the definitions and nothing of rift.
 
 #include <fmt/format.h>
 
@@ -13,6 +14,8 @@
 #include "rift/report/json/json.hpp"
 #include "rift/report/text/text.hpp"
 #include "rift/yaml/enum_name.hpp"
+#include "support/inputs/trials.hpp"
+#include "support/tree.hpp"
 
 namespace rift::report {
 namespace {
@@ -253,6 +256,42 @@ TEST_CASE("What explanation.json says of rows, parts and cells follows from the 
     CHECK(setting["rows"] == ids);
   }
   CHECK(undecided == told["undecided"].size());
+}
+
+TEST_CASE("Each number of summary.json and explanation.json is the one that SciPy has for it") {
+  const json oracle =
+      json::parse(test::ReadFile(test::SourceDir() + "/tests/report/oracle/values.json"));
+  const sweep::SweepResult result = synthetic::Uneven();
+  // What the sweep was told, and no result.
+  const std::vector<std::string> settings{"/definition/", "/replaced_references/",
+                                          "/verdicts/share", "/verdicts/confidence"};
+  size_t checked = 0;
+  for (const auto& [name, text] : std::map<std::string, std::string>{
+           {"summary", SummaryJson(result)},
+           {"explanation", ExplanationJson(result, sweep::Explain(result))}}) {
+    const json told = json::parse(text).flatten();
+    for (const auto& [pointer, expected] : oracle[name].items()) {
+      INFO(name << " " << pointer << " " << expected);
+      REQUIRE(told.contains(pointer));
+      INFO(told[pointer]);
+      if (expected.is_number()) {
+        REQUIRE(told[pointer].is_number());
+        CHECK(told[pointer].get<double>() ==
+              Approx(expected.get<double>()).epsilon(1e-8).margin(1e-12));
+      } else {
+        CHECK(told[pointer] == expected);
+      }
+      ++checked;
+    }
+    for (const auto& [pointer, value] : told.items()) {
+      INFO(name << " " << pointer << " is " << value << ", of which the oracle does not know");
+      const bool is_setting =
+          std::any_of(settings.begin(), settings.end(),
+                      [&](const std::string& start) { return pointer.rfind(start, 0) == 0; });
+      CHECK((!value.is_number() || is_setting || oracle[name].contains(pointer)));
+    }
+  }
+  CHECK(checked > 450);
 }
 
 }  // namespace
