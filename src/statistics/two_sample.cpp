@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -16,6 +17,8 @@ namespace rift::statistics {
 namespace {
 
 constexpr std::uint64_t kPermutations = 72;
+/// A score nearer to zero is rounding, as of a feature that is constant.
+constexpr double kLeastScore = 1e-9;
 
 /// The observations as matrices, with the rows of each group.
 struct Samples {
@@ -81,7 +84,8 @@ Eigen::VectorXd ToldRight(const Eigen::MatrixXd& features, const Eigen::VectorXd
     const Eigen::VectorXd scores = model.Scores(features(split.tried, Eigen::all));
     for (Eigen::Index i = 0; i < scores.size(); ++i) {
       const Eigen::Index row = split.tried[static_cast<size_t>(i)];
-      if (scores[i] != 0.0) right[row] = (scores[i] > 0.0) == (is_first[row] > 0.5) ? 1.0 : 0.0;
+      if (std::abs(scores[i]) < kLeastScore) continue;
+      right[row] = (scores[i] > 0.0) == (is_first[row] > 0.5) ? 1.0 : 0.0;
     }
   }
   return right;

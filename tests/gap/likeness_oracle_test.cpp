@@ -1,5 +1,5 @@
-// Every number of a likeness beside that of tests/gap/oracle/likeness.py, which knows the definitions
-// and nothing of rift.
+// Every number of a likeness beside that of tests/gap/oracle/likeness.py, which knows the
+// definitions and nothing of rift.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -32,8 +32,8 @@ std::vector<std::vector<std::string>> RowsOf(const std::string& name) {
   return rows;
 }
 
-/// Slow at first; weaves about a parabola. `cells`: rows, seconds, length, left, bend, amplitude and
-/// waves of the weave, and its phase.
+/// Slow at first; weaves about a parabola. `cells`: rows, seconds, length, left, bend, amplitude
+/// and waves of the weave, and its phase.
 Trajectory Drive(const std::vector<std::string>& cells) {
   std::vector<double> of;
   for (const std::string& cell : cells) of.push_back(std::stod(cell));
