@@ -5,32 +5,16 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "rift/gap/likeness.hpp"
-#include "support/inputs/trials.hpp"
-#include "support/tree.hpp"
+#include "support/inputs/oracle.hpp"
 
 namespace rift::gap {
 namespace {
 
 using trajectory::Trajectory;
-
-/// The cells of each row of a file in tests/gap/oracle, without the first.
-std::vector<std::vector<std::string>> RowsOf(const std::string& name) {
-  std::istringstream lines(test::ReadFile(test::SourceDir() + "/tests/gap/oracle/" + name));
-  std::vector<std::vector<std::string>> rows;
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    rows.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
-  }
-  return rows;
-}
 
 /// Slow at first; weaves about a parabola. `cells`: rows, seconds, length, left, bend, amplitude
 /// and waves of the weave, and its phase.
@@ -51,7 +35,7 @@ Trajectory Drive(const std::vector<std::string>& cells) {
 
 std::vector<RepeatedSetting> Settings() {
   std::vector<RepeatedSetting> settings;
-  for (const std::vector<std::string>& cells : RowsOf("likeness_drives.csv")) {
+  for (const std::vector<std::string>& cells : test::OracleRows("gap", "likeness_drives.csv")) {
     const size_t setting = std::stoul(cells[0]);
     if (setting == settings.size()) settings.emplace_back();
     const Trajectory path = Drive({cells.begin() + 2, cells.end()});
@@ -93,7 +77,7 @@ TEST_CASE("Each number of a likeness is the one that the definition gives in Num
     fields[name + std::string("/low")] = both.ratio_interval.low;
     fields[name + std::string("/high")] = both.ratio_interval.high;
   }
-  const auto rows = RowsOf("likeness.csv");
+  const auto rows = test::OracleRows("gap", "likeness.csv");
   CHECK(rows.size() == fields.size());
   for (const std::vector<std::string>& cells : rows) {
     INFO(cells[0]);

@@ -4,11 +4,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
-#include <sstream>
+#include <string>
+#include <vector>
 
 #include "rift/gap/comparison.hpp"
-#include "support/inputs/trials.hpp"
-#include "support/tree.hpp"
+#include "support/inputs/oracle.hpp"
 
 namespace rift::gap {
 namespace {
@@ -21,16 +21,11 @@ struct Case {
 std::string Folder() { return test::SourceDir() + "/tests/gap/oracle/"; }
 
 std::map<std::string, Case> Cases() {
-  std::istringstream lines(test::ReadFile(Folder() + "values.csv"));
   std::map<std::string, Case> cases;
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    std::string name, samples, skip, align, field, value;
-    for (std::string* cell : {&name, &samples, &skip, &align, &field, &value}) {
-      std::getline(cells, *cell, ',');
-    }
+  for (const std::vector<std::string>& cells : test::OracleRows("gap", "values.csv")) {
+    REQUIRE(cells.size() == 6);
+    const auto &name = cells[0], &samples = cells[1], &skip = cells[2], &align = cells[3],
+               &field = cells[4], &value = cells[5];
     Case& one = cases[name];
     one.options.samples = std::stoi(samples);
     one.options.skip_start = std::stod(skip);

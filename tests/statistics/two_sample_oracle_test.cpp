@@ -1,38 +1,21 @@
-// Every number of a classifier two-sample test beside that of tests/statistics/oracle/two_sample.py,
-// which knows the definition and nothing of rift.
+// Every number of a classifier two-sample test beside that of
+// tests/statistics/oracle/two_sample.py, which knows the definition and nothing of rift.
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "rift/statistics/two_sample.hpp"
-#include "support/inputs/trials.hpp"
-#include "support/tree.hpp"
+#include "support/inputs/oracle.hpp"
 
 namespace rift::statistics {
 namespace {
 
-/// The cells of each row of a file in tests/statistics/oracle, without the first.
-std::vector<std::vector<std::string>> RowsOf(const std::string& name) {
-  std::istringstream lines(
-      test::ReadFile(test::SourceDir() + "/tests/statistics/oracle/" + name));
-  std::vector<std::vector<std::string>> rows;
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    rows.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
-  }
-  return rows;
-}
-
 TEST_CASE("Each number of a two-sample test is the one that its definition gives in SciPy") {
   std::vector<Observation> observations;
-  for (const std::vector<std::string>& cells : RowsOf("observations.csv")) {
+  for (const std::vector<std::string>& cells : test::OracleRows("statistics", "observations.csv")) {
     Observation& one = observations.emplace_back();
     one.group = std::stoul(cells[0]);
     one.is_first = cells[1] == "1";
@@ -59,7 +42,7 @@ TEST_CASE("Each number of a two-sample test is the one that its definition gives
   }
   CHECK(found.features.front().feature == 1);
   size_t checked = 0;
-  for (const std::vector<std::string>& cells : RowsOf("two_sample.csv")) {
+  for (const std::vector<std::string>& cells : test::OracleRows("statistics", "two_sample.csv")) {
     INFO(cells[0] << " " << cells[1]);
     const double expected = std::stod(cells[1]);
     if (cells[0] == "p") {
