@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -27,6 +28,7 @@ namespace {
 /// The result of one job.
 JobResult ResultOf(const WorkerPool::Work& work, const RunOptions& options = {}) {
   JobResult found;
+  std::fflush(stdout);  // a sanitizer's _exit() writes in the worker what Catch has not yet
   WorkerPool pool(work, 1, options);
   pool.Run({1, [](int) { return std::string("job"); },
             [&](int, const JobResult& result) { found = result; }, [] { return true; }});
