@@ -14,7 +14,7 @@ from scipy import optimize, special, stats
 
 HERE = pathlib.Path(__file__).parent
 RIDGE, FOLDS = 0.7, 4
-GROUPS, FEATURES = 7, 4
+GROUPS = 7
 SHUFFLES, RESAMPLES = 2000, 200_000
 
 draw = np.random.default_rng(20261128)
