@@ -283,12 +283,14 @@ TEST_CASE("Each number of summary.json and explanation.json is the one that SciP
       }
       ++checked;
     }
-    for (const auto& [pointer, value] : told.items()) {
-      INFO(name << " " << pointer << " is " << value << ", of which the oracle does not know");
+    for (const auto& item : told.items()) {
+      const std::string& pointer = item.key();
+      INFO(name << " " << pointer << " is " << item.value()
+                << ", of which the oracle does not know");
       const bool is_setting =
           std::any_of(settings.begin(), settings.end(),
                       [&](const std::string& start) { return pointer.rfind(start, 0) == 0; });
-      CHECK((!value.is_number() || is_setting || oracle[name].contains(pointer)));
+      CHECK((!item.value().is_number() || is_setting || oracle[name].contains(pointer)));
     }
   }
   CHECK(checked > 450);
