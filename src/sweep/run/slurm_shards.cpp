@@ -162,9 +162,10 @@ void SlurmShards::LookAt(Group& group, ShardCounts& counts) {
 
 /// It is submitted anew.
 void SlurmShards::GiveUp(Group& group, size_t index, const SlurmTask& queued) {
-  watch_.say(fmt::format(
-      "note: shard {} of {} lost its node so often that Slurm holds it ({}); it is submitted anew",
-      index, group.array.Folder().string(), queued.reason));
+  watch_.say(fmt::format("note: shard {} of {} {} that Slurm holds it ({}); it is submitted anew",
+                         index, group.array.Folder().string(),
+                         queued.LostItsNodes() ? "lost its node so often" : "failed to start, so",
+                         queued.reason));
   try {
     CancelTask(queued, static_cast<int>(index), Patience());
     group.tasks[index].absent = kMostAbsent;

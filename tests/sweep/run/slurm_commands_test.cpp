@@ -296,6 +296,14 @@ TEST_CASE("Whoever is told to stop cancels the jobs, and the next takes in what 
 }
 
 TEST_CASE("A task that Slurm holds for good is cancelled, and told") {
+  struct Held {
+    std::string reason, since;
+  };
+  const Held held =
+      GENERATE(Held{"JobHoldMaxRequeue", "lost its node so often"},
+               Held{"launch failed requeued held", "failed to start, so"},
+               Held{"launch_failed_requeued_held", "failed to start, so"},
+               Held{"user env retrieval failed requeued held", "failed to start, so"});
   const Cluster cluster;
   Journal journal = cluster.NewJournal();
   const Shard shard = ShardOf("a");
@@ -306,7 +314,7 @@ TEST_CASE("A task that Slurm holds for good is cancelled, and told") {
   watch.say = [&](const std::string& line) { said.push_back(line); };
   watch.seen = [&](const ShardCounts&) {
     ++looks;
-    if (looks == 1) cluster.Answers("squeue", "41_0|PENDING|JobHoldMaxRequeue\n");
+    if (looks == 1) cluster.Answers("squeue", "41_0|PENDING|" + held.reason + "\n");
     if (looks == 2) {
       cluster.Answers("squeue", "");
       cluster.Finishes(shard, "a");
@@ -315,9 +323,8 @@ TEST_CASE("A task that Slurm holds for good is cancelled, and told") {
   SlurmShards slurm(cluster.Out(), options, "", journal, watch);
   CHECK(slurm.Run({shard}));
   REQUIRE(said.size() == 1);
-  CHECK(said[0] == "note: shard 0 of " + (cluster.Out() / "slurm/1").string() +
-                       " lost its node so often that Slurm holds it (JobHoldMaxRequeue); it is "
-                       "submitted anew");
+  CHECK(said[0] == "note: shard 0 of " + (cluster.Out() / "slurm/1").string() + " " + held.since +
+                       " that Slurm holds it (" + held.reason + "); it is submitted anew");
   CHECK(cluster.Arguments("scancel").starts_with("41_0\n"));
   CHECK(test::ReadFile(cluster.Out() / "slurm/1/jobs") == "41 0\n41 0\n");
 }

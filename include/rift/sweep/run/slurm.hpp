@@ -34,7 +34,13 @@ struct SlurmTask {
 
   /// After max_batch_requeue failures of its nodes (5 by default) Slurm keeps a task without ever
   /// starting it again.
-  bool IsGivenUp() const { return reason == "JobHoldMaxRequeue"; }
+  bool LostItsNodes() const { return reason == "JobHoldMaxRequeue"; }
+  /// The same, after a single failure: a node that goes down while it starts the task, or cannot
+  /// set it up ("launch failed requeued held"; later versions write underscores).
+  bool FailedToStart() const {
+    return reason.ends_with("requeued held") || reason.ends_with("requeued_held");
+  }
+  bool IsGivenUp() const { return LostItsNodes() || FailedToStart(); }
   bool IsWaiting() const { return state == "PENDING" || state == "REQUEUE_HOLD"; }
 };
 
