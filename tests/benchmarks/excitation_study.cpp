@@ -52,10 +52,12 @@ class Study {
                                         files::ReadFile);
     robot_.simulation.terrain.surface = "ground";
     robot_.calibrate.fit.list.clear();
-    // As `rift sweep` reads what `rift drive --identify` leaves: each fit starts at the robot's values.
+    // As `rift sweep` reads what `rift drive --identify` leaves: each fit starts at the robot's
+    // values.
     const std::string text = experiment::WriteExperiment(sessions::IdentificationFit(robot_));
     const auto method = robot_.calibrate.method;
-    robot_ = experiment::LoadExperiment("/study.yaml", {}, [&](const std::string&) { return text; });
+    robot_ =
+        experiment::LoadExperiment("/study.yaml", {}, [&](const std::string&) { return text; });
     robot_.calibrate.method = method;
   }
 
@@ -90,8 +92,8 @@ class Study {
       };
       fmt::print("{:>3} {:<38} {:.4f}; {:.0f} s: {}; {} whole drives: {}; {} logs: {}; {:.2f}\n",
                  repeat, robot_.calibrate.fit.list[i].key, truth[i], minute_s, shown(minute),
-                 program.size(),
-                 shown(drives), table.size(), shown(logs), width(drives) / width(logs));
+                 program.size(), shown(drives), table.size(), shown(logs),
+                 width(drives) / width(logs));
     }
     const double own_m = MeanGap_m(fresh, truth);
     const double minute_m = MeanGap_m(fresh, ValuesOf(minute));
@@ -178,7 +180,8 @@ class Study {
     std::vector<Drive> drives;
     for (int i = 0; i < times; ++i) {
       for (const Experiment& program : programs) {
-        drives.push_back(DriveOne(program, truth, fmt::format("program {}", drives.size()), random));
+        drives.push_back(
+            DriveOne(program, truth, fmt::format("program {}", drives.size()), random));
       }
     }
     return drives;
@@ -223,11 +226,10 @@ class Study {
         const auto seed = 900'000 + 1000 * i + static_cast<std::uint64_t>(run);
         sweep::SimulatedRun driven = sweep::Simulate(TwinOf(drives[i], values, seed));
         if (driven.result.outcome != trial::Outcome::kReached) continue;
-        runs.push_back(trajectory::OnFramesOf(std::move(driven.result.trajectory),
-                                              robot_.candidate.grid_fps));
+        runs.push_back(
+            trajectory::OnFramesOf(std::move(driven.result.trajectory), robot_.candidate.grid_fps));
       }
-      const double gap_m =
-          gap::MeanPathGap_m(drives[i].log.log, runs, robot_.gap, robot_.likeness);
+      const double gap_m = gap::MeanPathGap_m(drives[i].log.log, runs, robot_.gap, robot_.likeness);
       if (!std::isnan(gap_m)) gaps_m.push_back(gap_m);
     }
     return statistics::Mean(gaps_m);
