@@ -69,9 +69,8 @@ class Study {
     const std::vector<Drive> table = DriveTable(truth, random);
     const std::vector<Drive> fresh = DriveTable(truth, random);
 
-    sweep::CalibrationOptions options = robot_.calibrate.method;
+    sweep::CalibrationOptions options;  // of an identification, which has no other
     options.runs = 0;
-    options.features.rounds = 0;
     const sweep::Calibration minute = Fit(halves, options);
     const sweep::Calibration drives = Fit(program, options);
     options = robot_.calibrate.method;
