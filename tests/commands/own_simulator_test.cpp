@@ -307,7 +307,7 @@ std::map<std::string, std::map<std::string, std::string>> FaultyRows(
                 std::string(run.find("--serve") == run.npos ? "false" : "true") + ", run: [" + run +
                 "]}\n" +
                 "reference: {kind: path}\n"
-                "run: {timeout_s: 8, memory_mb: 512, retries: 0}\n"
+                "run: {timeout_s: 20, memory_mb: 512, retries: 0}\n"
                 "space: {mode: [" +
                 modes + "]}\n");
   const ProcessResult result =
@@ -333,7 +333,7 @@ TEST_CASE("Each fault of a program is a row with its reason, and no process is l
   CHECK(rows["good"]["status"] == "ok");
   CHECK(rows["orphan"]["status"] == "ok");
   CHECK(rows["hang"]["status"] == "hung");
-  CHECK(rows["hang"]["reason"] == "had not ended after 8 s (run.timeout_s)");
+  CHECK(rows["hang"]["reason"] == "had not ended after 20 s (run.timeout_s)");
   CHECK(rows["hang"]["candidate"] == "program with seed 1");
   CHECK(rows["hang"]["reference"] == "waypoint path");
   CHECK(rows["large"]["status"] == "out_of_memory");
@@ -538,16 +538,13 @@ TEST_CASE("A program that always fails is named with its reason after one nomina
 TEST_CASE(
     "Only a nominal run that did not arrive is tried with other seeds, each on its own time") {
   const TemporaryFolder folder;
-  // Ten nominal runs of 2.2 s: together they take longer than one may. A busy machine takes some
-  // seconds to start Python.
-  const std::string runs = folder / "runs";
+  // Ten nominal runs of 2.2 s: together they take longer than one may. A busy machine may take
+  // seconds to start Python: a run that hangs is tried again.
   WriteText(folder / "line.py",
-            LineSimulator("if os.path.getsize('" + runs + "') < 10:\n  open('" + runs +
-                          "', 'a').write('x')\n  time.sleep(2.2)\n"
+            LineSimulator("if k == 0.8: time.sleep(2.2)\n"
                           "if seed in (1, 3): print('too slow', file=sys.stderr); sys.exit(10)"));
-  WriteText(runs, "");
   WriteText(folder / "line.yaml",
-            AgainstNominal("falsify: {most_repeats: 8}\nrun: {timeout_s: 21, retries: 0}\n"));
+            AgainstNominal("falsify: {most_repeats: 8}\nrun: {timeout_s: 21, retries: 2}\n"));
   const ProcessResult result =
       RunRift({"sweep", folder / "line.yaml", "--out", folder / "out", "--jobs", "1"});
   INFO(result.err);

@@ -159,7 +159,7 @@ TEST_CASE("A program that hangs does not hold up the likeness of a sweep over re
       "reference: {kind: logs, path: 'robot_{trial}.csv', trials: 2, units: mm,\n"
       "            columns: 't=time,x=pose_x,y=pose_y'}\n"
       "space: {mode: [good, hang]}\n"
-      "run: {timeout_s: 3, retries: 0}\n"
+      "run: {timeout_s: 10, retries: 0}\n"
       "likeness: {shuffles: 19}\n",
       {"--jobs", "2"});
   INFO(run.err);

@@ -288,7 +288,7 @@ TEST_CASE("A worst trial that does not come out again costs its picture alone, a
   const auto side = [&](const std::string& end) {
     return "{kind: program, run: [" + sim + ", \"{out}\", \"" + end + "\"]}\n";
   };
-  const std::string limits = "run: {timeout_s: 1, retries: 0}\n";
+  const std::string limits = "run: {timeout_s: 5, retries: 0}\n";
   Swept swept(LoadText(kShortWay + "candidate: " + side("{mu}") + "reference: {kind: path}\n" +
                        limits + "space: {mu: [0.02, 0.1]}\n"));
   Swept simulated(
@@ -301,7 +301,7 @@ TEST_CASE("A worst trial that does not come out again costs its picture alone, a
   };
   for (const Case& end : {Case{"echo no licence >&2; exit 1",
                                "program with seed 1: ended with exit code 1: no licence"},
-                          Case{"exec sleep 1000", "had not ended after 1 s (run.timeout_s)"},
+                          Case{"exec sleep 1000", "had not ended after 5 s (run.timeout_s)"},
                           Case{"", "cannot run " + sim}}) {
     INFO(end.lines);
     end.lines.empty() ? static_cast<void>(fs::remove(sim)) : write_program(end.lines);

@@ -317,8 +317,8 @@ TEST_CASE("The time of a job begins when the one before it has ended") {
         ::usleep(400'000);
         return job;
       },
-      1, {.timeout_s = 1.2, .retries = 0});  // for 1.6 s of jobs
-  for (const auto& [index, result] : RunAll(pool, 4)) {
+      1, {.timeout_s = 3.0, .retries = 0});  // for 3.2 s of jobs
+  for (const auto& [index, result] : RunAll(pool, 8)) {
     CHECK(result.end == JobEnd::kDone);
     CHECK(result.bytes == std::to_string(index));
   }
