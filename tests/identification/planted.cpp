@@ -53,7 +53,7 @@ std::vector<Planted> PlantAt(std::uint64_t repeat) {
   };
   return {{"simulation.link.delay_s", 0.02, 0.20, 0.06, between(0.08, 0.14)},
           {"simulation.motor.mismatch", -0.10, 0.10, 0.0, between(-0.06, 0.06)},
-          {"simulation.terrain.surfaces.parchment.mu", 0.04, 0.30, 0.20, between(0.07, 0.13)},
+          {"simulation.terrain.surfaces.parchment.caster_factor", 0.0, 3.0, 1.0, between(1.0, 2.0)},
           {"simulation.terrain.surfaces.bump.mu", 0.5, 1.2, 0.85, 0.85, true}};
 }
 

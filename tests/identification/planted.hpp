@@ -18,12 +18,12 @@ struct Planted {
   bool is_irrelevant = false;  ///< nothing in the logs depends on it
 };
 
-/// A delay, a mismatch and a friction, drawn anew for each repeat, and the friction of a surface
-/// that the robot never sees.
+/// A delay, a mismatch and the caster's friction, drawn anew for each repeat, and the friction of a
+/// surface that the robot never sees.
 std::vector<Planted> PlantAt(std::uint64_t repeat);
 
-/// The planted robot drives the paper's waypoints on slippery parchment, put down by hand, with all
-/// its noise; then the logs alone are calibrated to.
+/// The planted robot drives the paper's waypoints on parchment, put down by hand, with all its
+/// noise; then the logs alone are calibrated to.
 sweep::Calibration FindPlanted(const GridStudy& robot, const std::vector<Planted>& planted,
                                std::uint64_t repeat, int logs,
                                const sweep::CalibrationOptions& options, int threads);
