@@ -3,9 +3,11 @@
 // fit predicts fresh waypoint drives of that robot. `truth`: its own values, the best there is.
 //
 //   excitation_study [--repeats N] [--first N] [--drives N] [--runs N] [--features N] [--threads N]
+//                    [--beside N]
 //
 // A minute: the program's straights and its turns as drives of their own, each twice. --drives: of
-// the whole program.
+// the whole program. --beside: how wide the intervals from so many waypoint logs are (the method of
+// planted_study) with and without these drives, and nothing else.
 
 #include <fmt/format.h>
 
@@ -64,6 +66,7 @@ class Study {
   void Repeat(std::uint64_t repeat) {
     std::mt19937_64 random(repeat);
     const std::vector<double> truth = Plant(random);
+    if (asked_["--beside"] > 0) return Beside(repeat, truth, random);
     const std::vector<Drive> halves = Excite(truth, 2, true, random);
     const std::vector<Drive> program = Excite(truth, asked_["--drives"], false, random);
     const std::vector<Drive> table = DriveTable(truth, random);
@@ -81,18 +84,12 @@ class Study {
     for (const Drive& drive : halves) minute_s += drive.log.log.Duration_s();
     for (size_t i = 0; i < truth.size(); ++i) {
       const auto shown = [&](const sweep::Calibration& fit) {
-        const sweep::CalibratedParameter& p = fit.parameters[i];
-        const bool is_inside = p.low <= truth[i] && truth[i] <= p.high;
-        return fmt::format("{:.4f} [{:.4f}, {:.4f}]{}{}", p.value, p.low, p.high,
-                           is_inside ? "" : " OUT", p.is_identified ? "" : " flagged");
-      };
-      const auto width = [&](const sweep::Calibration& fit) {
-        return fit.parameters[i].high - fit.parameters[i].low;
+        return Shown(fit.parameters[i], truth[i]);
       };
       fmt::print("{:>3} {:<38} {:.4f}; {:.0f} s: {}; {} whole drives: {}; {} logs: {}; {:.2f}\n",
                  repeat, robot_.calibrate.fit.list[i].key, truth[i], minute_s, shown(minute),
                  program.size(), shown(drives), table.size(), shown(logs),
-                 width(drives) / width(logs));
+                 Width(drives.parameters[i]) / Width(logs.parameters[i]));
     }
     const double own_m = MeanGap_m(fresh, truth);
     const double minute_m = MeanGap_m(fresh, ValuesOf(minute));
@@ -108,6 +105,44 @@ class Study {
   }
 
  private:
+  static double Width(const sweep::CalibratedParameter& found) { return found.high - found.low; }
+
+  static std::string Shown(const sweep::CalibratedParameter& found, double truth) {
+    const bool is_inside = found.low <= truth && truth <= found.high;
+    return fmt::format("{:.4f} [{:.4f}, {:.4f}]{}{}", found.value, found.low, found.high,
+                       is_inside ? "" : " OUT", found.is_identified ? "" : " flagged");
+  }
+
+  /// Waypoint logs, evenly over the settings, and the same ones with whole drives of the program.
+  void Beside(std::uint64_t repeat, const std::vector<double>& truth, std::mt19937_64& random) {
+    const std::vector<Drive> table = DriveTable(truth, random);
+    const size_t count = std::min(static_cast<size_t>(asked_["--beside"]), table.size());
+    std::vector<Drive> logs;
+    for (size_t i = 0; i < count; ++i) logs.push_back(table[i * table.size() / count]);
+    const std::vector<Drive> program = Excite(truth, asked_["--drives"], false, random);
+    std::vector<Drive> both = logs;
+    both.insert(both.end(), program.begin(), program.end());
+
+    sweep::CalibrationOptions options;
+    options.runs = 0;
+    options.iterations = 12;
+    options.horizon.phases = 4;
+    const sweep::Calibration of_logs = Fit(logs, options), of_both = Fit(both, options);
+    const sweep::Calibration of_program = Fit(program, options);
+    for (size_t i = 0; i < truth.size(); ++i) {
+      fmt::print(
+          "{:>3} {:<38} {:.4f}; {} logs: {}; and {} drives: {}, {:.2f} times as wide; drives "
+          "alone: {}, {:.2f}\n",
+          repeat, robot_.calibrate.fit.list[i].key, truth[i], logs.size(),
+          Shown(of_logs.parameters[i], truth[i]), program.size(),
+          Shown(of_both.parameters[i], truth[i]),
+          Width(of_both.parameters[i]) / Width(of_logs.parameters[i]),
+          Shown(of_program.parameters[i], truth[i]),
+          Width(of_program.parameters[i]) / Width(of_logs.parameters[i]));
+    }
+    std::fflush(stdout);
+  }
+
   std::vector<double> Start() const {
     std::vector<double> values;
     for (const auto& free : robot_.calibrate.fit.list) values.push_back(free.start);
@@ -243,7 +278,8 @@ class Study {
 
 int main(int count, char** arguments) {
   std::map<std::string, int> asked{{"--repeats", 3}, {"--first", 1},      {"--drives", 5},
-                                   {"--runs", 20},   {"--features", 100}, {"--threads", 1}};
+                                   {"--runs", 20},   {"--features", 100}, {"--threads", 1},
+                                   {"--beside", 0}};
   try {
     for (int i = 1; i + 1 < count; i += 2) asked.at(arguments[i]) = std::stoi(arguments[i + 1]);
     rift::Study study(asked);
