@@ -31,7 +31,8 @@ enum Draw : std::uint64_t {
   kHeight = 8,
   kRoll = 10,
   kPitch = 12,
-  kDropout = 14
+  kDropout = 14,
+  kArrival = 16
 };
 
 constexpr double kClockTick_s = 1e-6;
@@ -126,7 +127,9 @@ void Mocap::TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t fram
   trial::PoseMeasurement measurement = Measure(pose, speed_mps, frame);
   if (options_.host_period_s) {
     measurement.captured_s = pose.t_s;  // until the host stamps it
-    in_camera_.push_back(measurement);
+    const double late_s = options_.arrival_jitter_s * std::abs(noise_.Normal(frame, kArrival));
+    const double before_s = in_camera_.empty() ? -kNever_s : in_camera_.back().at_s;
+    in_camera_.push_back({std::max(arrives_s + late_s, before_s), measurement});
     return;
   }
   // A stamp lies after the last one and not after the arrival, whatever its jitter.
@@ -140,11 +143,10 @@ void Mocap::TakeFrame(const TruePose& pose, double speed_mps, std::uint64_t fram
 /// for the next.
 void Mocap::RunHost(double until_s) {
   for (;;) {
-    const double arrives_s =
-        in_camera_.empty() ? kNever_s : in_camera_.front().captured_s + Latency_s();
+    const double arrives_s = in_camera_.empty() ? kNever_s : in_camera_.front().at_s;
     if (std::min(arrives_s, host_done_s_) > until_s) return;
     if (arrives_s <= host_done_s_) {
-      if (!with_driver_) with_driver_ = in_camera_.front();
+      if (!with_driver_) with_driver_ = in_camera_.front().measurement;
       in_camera_.pop_front();
       if (host_done_s_ == kNever_s) BeginTurn(arrives_s);
     } else {

@@ -33,6 +33,7 @@ struct MocapOptions {
   double host_late_s = 0.011;
   double exposure_s = 0.010;
   double processing_s = 0.070;
+  double arrival_jitter_s = 0.0;
   double noise_across_m = 0.00035;
   double blur_across_s = 0.0016;
   double noise_along_m = 0.0001;
@@ -84,6 +85,10 @@ struct MocapOptions {
         "processing_s", self.processing_s, 0.0, 2.0,
         "from the end of the exposure to the pose in s (camera and detection: 0.06 to 0.1); with a "
         "host's period to the driver alone");
+    field(
+        "arrival_jitter_s", self.arrival_jitter_s, 0.0, 0.2,
+        "with a host's period, how much later than the quickest a frame is with the driver, in s: "
+        "root mean square, half-normal (logs: 0.007, by which frames the rows are)");
     field("noise_across_m", self.noise_across_m, 0.0, 0.1,
           "scatter across the heading at rest in m (trials: 0.00035)");
     field("blur_across_s", self.blur_across_s, 0.0, 0.1,
@@ -152,7 +157,7 @@ class Mocap {
   double host_done_s_ = 0.0;  ///< when the host's turn ends; infinite while it waits for a picture
   std::uint64_t host_turns_ = 0;
   double host_wandered_s_ = 0.0;
-  std::deque<trial::PoseMeasurement> in_camera_;       ///< captured, not yet with the driver
+  std::deque<Arrival> in_camera_;                      ///< captured, not yet with the driver
   std::optional<trial::PoseMeasurement> with_driver_;  ///< the next that the host will fetch
   std::optional<trial::PoseMeasurement> in_work_;      ///< stamped when the host's turn ends
   std::deque<Arrival> on_the_way_;
