@@ -40,7 +40,7 @@ TEST_CASE("The Webots twin follows the authors' Webots logs") {
 }
 
 // The delayed loop is chaotic: which of the runs pass a waypoint and circle until the time is up
-// changes with a tenth of a millimetre at the start, how many does not: 8 % (79 of 960).
+// changes with a tenth of a millimetre at the start, how many does not: 10 % (100 of 960).
 TEST_CASE("The paper grid on the simulator finishes nearly every trial close to the robot") {
   RIFT_SKIP_WITHOUT_TRIALS();
   int finished = 0, unfinished = 0;
@@ -52,7 +52,7 @@ TEST_CASE("The paper grid on the simulator finishes nearly every trial close to 
     sum_m += summary["mean_gap_m"].get<double>();
   }
   CHECK(finished + unfinished == 3 * 48);
-  CHECK(unfinished <= 20);  // beyond the mean of 12 in one of a hundred
+  CHECK(unfinished <= 23);  // beyond the mean of 15 in one of a hundred
   CHECK(sum_m / 3.0 < 0.047);
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("The simulated robot drives and answers and weaves like the real one o
   CHECK(path.spread_m.Ratio() == Approx(1.0).margin(0.1));
   CHECK(found.told_apart.all.accuracy < 0.6);
   CHECK(found.told_apart.all.p > 0.01);
-  CHECK(found.failed_runs < 33);  // of 288: beyond the mean of 23 in two of a hundred
+  CHECK(found.failed_runs < 41);  // of 288: beyond the mean of 30 in two of a hundred
 }
 
 TEST_CASE("Without the delays of link and listener the robot hardly weaves") {
