@@ -30,7 +30,9 @@ void RunAsPrinted(const test::TemporaryFolder& folder, const std::string& recipe
   const int status = test::RunShell("cd " + folder.Path().string() + " && {\n" + recipe + "\n} > " +
                                     log + " 2>&1");
   INFO(recipe << "\n" << test::ReadFile(log));
-  CHECK(status == 0);
+  // The worst of a sweep may be a run that does not arrive, which ends with 1.
+  const bool may_miss = recipe.find("rift simulate --replay") != recipe.npos;
+  CHECK((status == 0 || (may_miss && status == 1)));
 }
 
 /// A command of a document, its lines that end in a backslash joined.
