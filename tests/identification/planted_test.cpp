@@ -68,7 +68,7 @@ TEST_CASE("A calibration without a simulated log of the fit is the least error a
 }
 
 TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what never acts") {
-  std::vector<test::Planted> planted = test::PlantAt(3);
+  std::vector<test::Planted> planted = test::PlantAt(1);
   planted = {{"simulation.terrain.surfaces.parchment.tracker_noise", 0.2, 3.0, 0.8, 1.8},
              planted[1],
              {"simulation.terrain.surfaces.parchment.unevenness", 0.0, 0.16, 0.03, 0.09},
@@ -80,7 +80,7 @@ TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what
   options.horizon.phases = 2;
   options.features = {.rounds = 2, .draws = 100};
   const sweep::Calibration found =
-      test::FindPlanted(test::LoadGridStudy(), planted, 3, 6, options, 2);
+      test::FindPlanted(test::LoadGridStudy(), planted, 1, 6, options, 2);
   for (size_t i = 0; i < 3; ++i) {
     const sweep::CalibratedParameter& one = found.parameters[i];
     INFO(planted[i].key << ": " << one.value << " in [" << one.low << ", " << one.high << "], "
