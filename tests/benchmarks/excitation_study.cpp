@@ -125,7 +125,6 @@ class Study {
 
     sweep::CalibrationOptions options;
     options.runs = 0;
-    options.iterations = 12;
     options.horizon.phases = 4;
     const sweep::Calibration of_logs = Fit(logs, options), of_both = Fit(both, options);
     const sweep::Calibration of_program = Fit(program, options);
