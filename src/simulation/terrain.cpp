@@ -136,16 +136,21 @@ std::optional<Plane> Terrain::PlaneNear(double x_m, double y_m, double reach_m) 
     return Plane{{x_m, y_m, 0.0}, Eigen::Vector3d::UnitZ()};
   }
   if (surface_.shape != Shape::kRampUp && surface_.shape != Shape::kRampDown) return std::nullopt;
-  const double foot_m = surface_.ramp_top_m / std::tan(surface_.ramp_rad);
   const double sign = surface_.shape == Shape::kRampDown ? 1.0 : -1.0;
   const double past_edge_m = sign * (x_m - surface_.ramp_edge_x_m);
   const double bend_m = 0.5 * surface_.ramp_bend_m;
+  const double foot_m = surface_.ramp_top_m / std::tan(surface_.ramp_rad);
+  const double back_m = surface_.ramp_plateau_rad > 0.0
+                            ? surface_.ramp_top_m / std::tan(surface_.ramp_plateau_rad)
+                            : kEndless_m;
   const bool sloped = past_edge_m > bend_m + reach_m && past_edge_m < foot_m - reach_m;
-  const bool level = past_edge_m < -bend_m - reach_m || past_edge_m > foot_m + reach_m;
-  if (!sloped && !level) return std::nullopt;
-  const Eigen::Vector3d normal =
-      level ? Eigen::Vector3d::UnitZ()
-            : Eigen::Vector3d(sign * std::sin(surface_.ramp_rad), 0.0, std::cos(surface_.ramp_rad));
+  const bool plateau = past_edge_m < -bend_m - reach_m && past_edge_m > reach_m - back_m;
+  const bool floor = past_edge_m > foot_m + reach_m || past_edge_m < -back_m - reach_m;
+  if (!sloped && !plateau && !floor) return std::nullopt;
+  const double fall_rad = floor    ? 0.0
+                          : sloped ? sign * surface_.ramp_rad
+                                   : -sign * surface_.ramp_plateau_rad;
+  const Eigen::Vector3d normal(std::sin(fall_rad), 0.0, std::cos(fall_rad));
   return Plane{{x_m, y_m, RampHeight(x_m)}, normal};
 }
 
@@ -177,11 +182,14 @@ bool Terrain::OnTable(double x_m, double y_m, double margin_m) const {
 double Terrain::RampHeight(double x_m) const {
   const double sign = surface_.shape == Shape::kRampDown ? 1.0 : -1.0;
   const double past_edge_m = sign * (x_m - surface_.ramp_edge_x_m);
+  const double fall = std::tan(surface_.ramp_rad), rise = std::tan(surface_.ramp_plateau_rad);
   const double into_bend_m = past_edge_m + 0.5 * surface_.ramp_bend_m;
-  const double level_m = into_bend_m > 0.0 && into_bend_m < surface_.ramp_bend_m
-                             ? 0.5 * into_bend_m * into_bend_m / surface_.ramp_bend_m
-                             : std::max(0.0, past_edge_m);
-  return std::max(0.0, surface_.ramp_top_m - level_m * std::tan(surface_.ramp_rad));
+  double height_m = surface_.ramp_top_m + past_edge_m * (past_edge_m < 0.0 ? rise : -fall);
+  if (into_bend_m > 0.0 && into_bend_m < surface_.ramp_bend_m) {
+    height_m = surface_.ramp_top_m + past_edge_m * rise -
+               0.5 * (fall + rise) * into_bend_m * into_bend_m / surface_.ramp_bend_m;
+  }
+  return std::max(0.0, height_m);
 }
 
 double Terrain::BumpHeight(double x_m, double y_m) const {

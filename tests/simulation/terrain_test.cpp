@@ -85,6 +85,50 @@ TEST_CASE("A bent board turns evenly from plateau to slope, downhill and uphill"
   }
 }
 
+TEST_CASE("A plateau may rise towards the slope, which it meets at its full height") {
+  const double rise_rad = 0.06, reach_m = 0.02, back_m = 0.24 / std::tan(rise_rad);
+  const double bend_m = GENERATE(0.0, 0.3);
+  for (const Shape shape : {Shape::kRampDown, Shape::kRampUp}) {
+    TerrainOptions options;
+    SurfaceOptions& board = options.surfaces["ground"];
+    board.shape = shape;
+    board.ramp_edge_x_m = 0.05;
+    board.ramp_bend_m = bend_m;
+    board.ramp_plateau_rad = rise_rad;
+    const Terrain terrain(options);
+    const double ahead = shape == Shape::kRampDown ? 1.0 : -1.0;
+    const auto height_m = [&](double past_edge_m) {
+      return terrain.HeightAt(0.05 + ahead * past_edge_m, 0.0);
+    };
+    CHECK(height_m(-0.5) == Approx(0.24 - 0.5 * std::tan(rise_rad)));
+    CHECK(height_m(0.5) == Approx(0.24 - 0.5 * std::tan(0.255)));
+    CHECK(height_m(0.0) == Approx(0.24 - (std::tan(0.255) + std::tan(rise_rad)) * bend_m / 8.0));
+    CHECK(height_m(-back_m - 0.1) == 0.0);
+    double slope_before = std::tan(rise_rad);
+    for (double past_m = -0.145; past_m < 0.15; past_m += 0.01) {  // without a step anywhere
+      const double slope = (height_m(past_m + 1e-3) - height_m(past_m - 1e-3)) / 2e-3;
+      CHECK(slope <= slope_before + 1e-9);
+      slope_before = slope;
+    }
+    int wrong = 0;
+    for (double past_m = -back_m - 0.2; past_m < 1.5; past_m += 0.0017) {
+      const auto plane = terrain.PlaneNear(0.05 + ahead * past_m, 0.1, reach_m);
+      const auto near = [&](double edge_m, double half_m) {
+        return std::abs(past_m - edge_m) < half_m + reach_m;
+      };
+      wrong += plane.has_value() ==
+               (near(0.0, 0.5 * bend_m) || near(-back_m, 0.0) || near(0.24 / std::tan(0.255), 0.0));
+      for (const double off_m : {-reach_m, reach_m}) {
+        if (!plane) continue;
+        const double x_m = 0.05 + ahead * past_m + off_m;
+        const Eigen::Vector3d point(x_m, 0.1, terrain.HeightAt(x_m, 0.1));
+        wrong += std::abs(plane->normal.dot(point - plane->point)) > 1e-12;
+      }
+    }
+    CHECK(wrong == 0);
+  }
+}
+
 TEST_CASE("The plane of a table ends at its edges, on every side") {
   TerrainOptions options;
   options.table_half_size_m = 1.0;

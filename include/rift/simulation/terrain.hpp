@@ -39,6 +39,7 @@ struct SurfaceOptions {
   double ramp_top_m = 0.24;
   double ramp_edge_x_m = 0.05;
   double ramp_bend_m = 0.0;
+  double ramp_plateau_rad = 0.0;
   double bump_size_m = 0.020;
   double bump_pitch_m = 0.060;
   double bump_height_m = 0.004;
@@ -77,7 +78,7 @@ struct SurfaceOptions {
     field("ramp_rad", self.ramp_rad, 0.001, 0.7,
           "inclination of the board in rad (z in the downhill logs; authors' world: 0.2404)");
     field("ramp_top_m", self.ramp_top_m, 0.0, 2.0,
-          "height of the plateau above the floor in m (z in the downhill logs: 0.24)");
+          "height of the plateau above the floor in m, at its edge (z in the downhill logs: 0.24)");
     field("ramp_edge_x_m", self.ramp_edge_x_m, -10.0, 10.0,
           "x at which plateau and slope meet, in m (z of the logs, axle: downhill 0.05, uphill "
           "0.31)");
@@ -85,6 +86,8 @@ struct SurfaceOptions {
         "ramp_bend_m", self.ramp_bend_m, 0.0, 1.0,
         "length in x over which plateau turns into slope, evenly, the edge in its middle, in m; 0: "
         "a sharp edge (downhill, z beside that on flat ground: 0.22)");
+    field("ramp_plateau_rad", self.ramp_plateau_rad, 0.0, 0.5,
+          "inclination of the plateau in rad: it rises towards the slope");
     field("bump_size_m", self.bump_size_m, 0.001, 1.0,
           "side of a block in m (paper's board: 0.02)");
     field("bump_pitch_m", self.bump_pitch_m, 0.002, 2.0,
