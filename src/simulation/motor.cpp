@@ -59,7 +59,7 @@ WheelDrive Motor::Drive(const StepPower& power, double rate_rad_s, double drag_n
   }
   const StepPower driven = ThroughLag(ThroughDeadBand(power), step_s);
   const double free_rad_s = driven.mean * options_.supply_ratio * no_load_rad_s_;
-  const double friction_nm = options_.friction_torque_nm + drag_nm;
+  const double friction_nm = Friction_nm(rate_rad_s) + drag_nm;
   WheelDrive drive{free_rad_s, 1.0 / nm_per_rad_s_, std::numeric_limits<double>::infinity()};
   const double running_rad_s = free_rad_s - std::copysign(friction_nm, rate_rad_s) / nm_per_rad_s_;
   if (std::abs(rate_rad_s) < kRest_rad_s) {
@@ -70,6 +70,14 @@ WheelDrive Motor::Drive(const StepPower& power, double rate_rad_s, double drag_n
     drive.friction_nm = friction_nm;
   }
   return drive;
+}
+
+/// Stribeck's curve, of a wheel that turns.
+double Motor::Friction_nm(double rate_rad_s) const {
+  const double running_nm = options_.friction_torque_nm;
+  if (options_.friction_fall_rad_s == 0.0) return running_nm;
+  const double fallen = rate_rad_s / options_.friction_fall_rad_s;
+  return running_nm + (options_.Breakaway_nm() - running_nm) * std::exp(-fallen * fallen);
 }
 
 StepPower Motor::ThroughDeadBand(const StepPower& power) const {
@@ -90,7 +98,7 @@ StepPower Motor::ThroughLag(const StepPower& power, double step_s) {
 /// motor asks for; from where the motor breaks it away, it is running friction. Without a lag the
 /// power changes at one moment of the step, with it evenly.
 double Motor::FrictionFromRest_nm(const StepPower& power, double drag_nm) const {
-  const double running_nm = options_.friction_torque_nm + drag_nm;
+  const double running_nm = Friction_nm(0.0) + drag_nm;
   const double breakaway_nm = options_.Breakaway_nm() + drag_nm;
   const double stall_nm = nm_per_rad_s_ * options_.supply_ratio * no_load_rad_s_;
   const double side = std::copysign(1.0, power.after);

@@ -83,6 +83,32 @@ TEST_CASE("A wheel at rest breaks away beyond its static friction, in either dir
         Approx(sign * 0.0019));
 }
 
+TEST_CASE(
+    "Friction falls evenly from that at rest to that of a turning wheel where it is asked to") {
+  MotorOptions options;
+  options.dead_band = 0.0;
+  options.friction_torque_nm = 0.002;
+  options.breakaway_torque_nm = 0.004;
+  options.friction_fall_rad_s = 5.0;
+  Motor motor(options, Side::kLeft);
+  const double stall_nm = 0.33 * 0.0980665, sign = GENERATE(-1.0, 1.0);
+  const auto friction_nm = [&](double rate_rad_s) {
+    const WheelDrive driven =
+        motor.Drive(StepPower::Constant(sign * 0.5), sign * rate_rad_s, 0.0, 0.004);
+    CHECK(driven.friction_nm == 0.0);
+    return 0.5 * stall_nm - sign * Torque(driven, 0.0);
+  };
+  CHECK(friction_nm(0.01) == Approx(0.004).epsilon(1e-4));
+  CHECK(friction_nm(5.0) == Approx(0.002 + 0.002 / M_E));
+  CHECK(friction_nm(10.0) == Approx(0.002 + 0.002 * std::exp(-4.0)));
+  CHECK(friction_nm(30.0) == Approx(0.002));
+  // A wheel that slows down without power meets the same friction, and so does one at rest.
+  CHECK(motor.Drive(StepPower::Constant(0.0), sign * 5.0, 0.001, 0.004).friction_nm ==
+        Approx(0.003 + 0.002 / M_E));
+  CHECK(motor.Drive(StepPower::Constant(sign * 0.0041 / stall_nm), 0.0, 0.0, 0.004).friction_nm ==
+        Approx(0.004));
+}
+
 TEST_CASE("Static friction below the running one is refused") {
   MotorOptions options;
   options.friction_torque_nm = 0.002;

@@ -35,6 +35,7 @@ struct MotorOptions {
   double mismatch_spread = 0.0;
   double friction_torque_nm = 0.0;
   std::optional<double> breakaway_torque_nm;
+  double friction_fall_rad_s = 0.0;
   std::optional<double> servo_torque_nm;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
@@ -72,6 +73,9 @@ struct MotorOptions {
         "breakaway_torque_nm", self.breakaway_torque_nm, 0.0, 10.0,
         "friction at a wheel at rest in N m, at least friction_torque_nm; none: the same (dc only; "
         "the robot stands on a ramp of 0.255 rad: more than 0.0031)");
+    field("friction_fall_rad_s", self.friction_fall_rad_s, 0.0, 1000.0,
+          "wheel speed over which friction falls from that at rest to that of a turning wheel "
+          "(Stribeck: as exp(-(speed / this)^2); dc only); 0: as soon as it turns");
     field("servo_torque_nm", self.servo_torque_nm, 1e-3, 100.0,
           "largest torque with which the servo holds its speed in N m (servo only; Dynamixel: its "
           "stall torque); none: any (Webots' 10 is never reached here)");
@@ -114,8 +118,9 @@ struct StepPower {
 enum class Side { kLeft, kRight };
 
 /// One motor with its driver. The torque of a brushed motor at 6 V x supply_ratio:
-/// torque = stall (power supply - rate / no_load) - friction sign(rate). A wheel at rest stays so,
-/// without creep, while motor and load together turn it with no more than the breakaway torque.
+/// torque = stall (power supply - rate / no_load) - friction(rate) sign(rate). A wheel at rest
+/// stays so, without creep, while motor and load together turn it with no more than the breakaway
+/// torque.
 class Motor {
  public:
   Motor(const MotorOptions& options, Side side);
@@ -127,6 +132,7 @@ class Motor {
  private:
   StepPower ThroughDeadBand(const StepPower& power) const;
   StepPower ThroughLag(const StepPower& power, double step_s);
+  double Friction_nm(double rate_rad_s) const;
   double FrictionFromRest_nm(const StepPower& power, double drag_nm) const;
 
   MotorOptions options_;
