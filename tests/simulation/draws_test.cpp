@@ -102,6 +102,29 @@ TEST_CASE("A host takes its period, its turns and the late ones from the draws o
   }
 }
 
+TEST_CASE("A frame is late at the host's driver by the draw of its number") {
+  MocapOptions options;
+  options.rate_hz = 20.0;
+  options.exposure_s = options.processing_s = options.frame_jitter_s = 0.0;
+  options.host_period_s = 0.006;  // a host that waits for each frame, and stamps it 6 ms later
+  options.host_period_spread_s = options.host_wander_s = options.host_jitter_s = 0.0;
+  options.host_late_share = 0.0;
+  options.arrival_jitter_s = 0.004;
+  for (const std::uint64_t seed : {1, 2, 3, 77}) {
+    const CounterRandom noise(seed, 22);
+    const double phase_s = CounterRandom(seed, 20).Uniform(0, 0) / 20.0;
+    REQUIRE(phase_s > options.host_period_s);
+    const auto seen = SeenOf(Mocap(options, seed), 0.3);
+    REQUIRE(seen.size() >= 19);
+    for (std::uint64_t frame = 0; frame < 19; ++frame) {
+      INFO(seed << " " << frame);
+      const double arrives_s =
+          phase_s + 0.05 * static_cast<double>(frame) + 0.004 * std::abs(noise.Normal(frame, 16));
+      CHECK(seen[frame].captured_s == Approx(arrives_s + 0.006).margin(1e-12));
+    }
+  }
+}
+
 LinkOptions Direct() { return {.delay_s = 0.0, .baud = 0.0, .poll_s = 0.0}; }
 
 TEST_CASE("A link takes its phase, its losses and its beginning from draws of their own") {
