@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "identification/trial_grid.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "support/processes/process.hpp"
 #include "support/processes/quick_gnuplot.hpp"
 #include "support/tree.hpp"
@@ -83,6 +87,35 @@ TEST_CASE("The simulated robot drives and answers and weaves like the real one o
   CHECK(found.told_apart.all.accuracy < 0.67);
   CHECK(found.told_apart.all.accuracy_interval.low < 0.6);
   CHECK(found.failed_runs < 41);  // of 288: beyond the mean of 30 in two of a hundred
+}
+
+/// When a log first has this x; by the rows about it.
+double TimeAt_s(const trajectory::Trajectory& log, double x_m) {
+  const auto beyond =
+      std::find_if(log.poses.begin(), log.poses.end(),
+                   [&](const trajectory::StampedPose& pose) { return pose.x_m >= x_m; });
+  REQUIRE((beyond != log.poses.begin() && beyond != log.poses.end()));
+  const trajectory::StampedPose &before = *std::prev(beyond), &after = *beyond;
+  return before.t_s + (after.t_s - before.t_s) * (x_m - before.x_m) / (after.x_m - before.x_m);
+}
+
+TEST_CASE("Downhill the simulated robot climbs to the edge as slowly and leaves it as fast") {
+  RIFT_SKIP_WITHOUT_TRIALS();
+  const test::GridStudy study = test::LoadGridStudy();
+  std::vector<test::GridTrial> trials = test::LoadTrialGrid(study, 0);
+  std::erase_if(trials, [](const test::GridTrial& trial) { return trial.surface != "downhill"; });
+  for (const auto& [from_m, to_m] : {std::pair{-0.24, -0.16}, {-0.04, 0.08}}) {
+    std::vector<double> real_mps, simulated_mps;
+    const auto speed_mps = [from = from_m, to = to_m](const trajectory::Trajectory& log) {
+      return (to - from) / (TimeAt_s(log, to) - TimeAt_s(log, from));
+    };
+    for (const sweep::RepeatedTrial& trial : test::DriveGrid(study, trials, 10)) {
+      real_mps.push_back(speed_mps(trial.real));
+      for (const auto& run : trial.runs) simulated_mps.push_back(speed_mps(run));
+    }
+    CAPTURE(from_m, to_m);
+    CHECK(statistics::Mean(simulated_mps) == Approx(statistics::Mean(real_mps)).margin(0.025));
+  }
 }
 
 TEST_CASE("Without the delays of link and listener the robot hardly weaves") {
