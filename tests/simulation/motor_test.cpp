@@ -84,7 +84,7 @@ TEST_CASE("A wheel at rest breaks away beyond its static friction, in either dir
 }
 
 TEST_CASE(
-    "Friction falls evenly from that at rest to that of a turning wheel where it is asked to") {
+    "Friction falls smoothly from that at rest to that of a turning wheel where it is asked to") {
   MotorOptions options;
   options.dead_band = 0.0;
   options.friction_torque_nm = 0.002;
