@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "rift/geometry/pose3.hpp"
+
 namespace rift::simulation {
 namespace {
 
@@ -89,14 +91,10 @@ double Power(const char* side, double power) {
 }
 
 TruePose PoseOf(const WorldState& state, double t_s) {
-  const Eigen::Matrix3d& r = state.world_from_robot;
-  return {t_s,
-          state.position_m.x(),
-          state.position_m.y(),
-          state.position_m.z(),
-          std::atan2(r(2, 1), r(2, 2)),
-          -std::asin(std::clamp(r(2, 0), -1.0, 1.0)),
-          std::atan2(r(1, 0), r(0, 0))};
+  const auto [roll_rad, pitch_rad, yaw_rad] = geometry::RollPitchYaw(state.world_from_robot);
+  return {
+      t_s,    state.position_m.x(), state.position_m.y(), state.position_m.z(), roll_rad, pitch_rad,
+      yaw_rad};
 }
 
 enum Stream : std::uint64_t { kMotorStream = 30, kGroundStream = 31 };

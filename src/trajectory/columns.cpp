@@ -10,6 +10,7 @@
 
 #include "plausibility.hpp"
 #include "rift/geometry/pose2.hpp"
+#include "rift/geometry/pose3.hpp"
 
 namespace rift::trajectory {
 namespace {
@@ -172,10 +173,10 @@ void SetAngles(StampedPose& pose, double qx, double qy, double qz, double qw,
   if (!(quaternion.norm() > 0.0)) {
     throw std::invalid_argument(fmt::format("{}: the quaternion has zero length", where));
   }
-  const Eigen::Matrix3d r = quaternion.toRotationMatrix();
-  pose.roll_rad = std::atan2(r(2, 1), r(2, 2));
-  pose.pitch_rad = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));
-  pose.yaw_rad = std::atan2(r(1, 0), r(0, 0));
+  const auto angles_rad = geometry::RollPitchYaw(quaternion.toRotationMatrix());
+  pose.roll_rad = angles_rad[0];
+  pose.pitch_rad = angles_rad[1];
+  pose.yaw_rad = angles_rad[2];
 }
 
 }  // namespace rift::trajectory

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace rift::geometry {
 
@@ -32,5 +35,12 @@ class PointMotion3 {
   Eigen::Vector3d offset_;
   Eigen::Matrix3d rotation_;
 };
+
+/// Roll, pitch and yaw in rad of a rotation Rz(yaw) Ry(pitch) Rx(roll), pitch in [-pi/2, pi/2].
+inline std::array<double, 3> RollPitchYaw(const Eigen::Matrix3d& rotation) {
+  return {std::atan2(rotation(2, 1), rotation(2, 2)),
+          std::asin(std::clamp(-rotation(2, 0), -1.0, 1.0)),
+          std::atan2(rotation(1, 0), rotation(0, 0))};
+}
 
 }  // namespace rift::geometry

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
+
+#include "rift/geometry/pose3.hpp"
 
 namespace rift::report {
 namespace {
@@ -16,12 +17,6 @@ constexpr std::array<const char*, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};
 void Append(std::string& line, double value) {
   if (!line.empty()) line += ',';
   if (!std::isnan(value)) fmt::format_to(std::back_inserter(line), "{}", value);
-}
-
-/// Yaw about the map's z, then pitch, then roll, as trajectories have them.
-std::array<double, 3> RollPitchYaw(const Eigen::Matrix3d& turn) {
-  return {std::atan2(turn(2, 1), turn(2, 2)), std::asin(std::clamp(-turn(2, 0), -1.0, 1.0)),
-          std::atan2(turn(1, 0), turn(0, 0))};
 }
 
 }  // namespace
@@ -48,7 +43,8 @@ std::string SightingRow(double t_s, const vision::Sighting& s) {
   std::string line;
   Append(line, t_s);
   for (const double value : s.map_from_tag.translation()) Append(line, if_posed(value));
-  for (const double angle : RollPitchYaw(s.map_from_tag.linear())) Append(line, if_posed(angle));
+  for (const double angle : geometry::RollPitchYaw(s.map_from_tag.linear()))
+    Append(line, if_posed(angle));
   for (const double value :
        {std::nan(""), std::nan(""), static_cast<double>(s.frame_index), s.latency_s,
         if_seen(static_cast<double>(s.mode)), if_seen(s.hamming), if_seen(s.decision_margin),
