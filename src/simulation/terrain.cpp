@@ -24,6 +24,11 @@ SurfaceOptions Surface(Shape shape, double mu, double rolling_resistance, double
   return surface;
 }
 
+Eigen::Vector2d Downhill(const SurfaceOptions& board) {
+  const double sign = board.shape == Shape::kRampUp ? -1.0 : 1.0;
+  return sign * Eigen::Vector2d(std::cos(board.ramp_turn_rad), std::sin(board.ramp_turn_rad));
+}
+
 constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 constexpr double kSlopeBase_m = 1e-4;
 constexpr double kMostBlocks = 8.0;  // in a row: more are a texture, which heights alone tell
@@ -81,6 +86,7 @@ std::vector<std::string> TerrainOptions::Choices() const {
 
 Terrain::Terrain(const TerrainOptions& options, std::shared_ptr<const HeightImage> image)
     : surface_(options.Chosen()),
+      downhill_(Downhill(surface_)),
       patches_(options.patches),
       table_half_size_m_(options.table_half_size_m.value_or(kEndless_m)),
       image_(std::move(image)) {
@@ -100,7 +106,7 @@ double Terrain::HeightAt(double x_m, double y_m) const {
       return 0.0;
     case Shape::kRampUp:
     case Shape::kRampDown:
-      return RampHeight(x_m);
+      return RampHeight(PastEdge(x_m, y_m));
     case Shape::kBumps:
       return BumpHeight(x_m, y_m);
     case Shape::kHeightfield:
@@ -116,9 +122,16 @@ Eigen::Vector3d Terrain::NormalAt(double x_m, double y_m) const {
   const auto slope = [](double before_m, double after_m) {
     return (after_m - before_m) / (2.0 * kSlopeBase_m);
   };
-  const double dz_dx = slope(HeightAt(x_m - kSlopeBase_m, y_m), HeightAt(x_m + kSlopeBase_m, y_m));
-  const double dz_dy = slope(HeightAt(x_m, y_m - kSlopeBase_m), HeightAt(x_m, y_m + kSlopeBase_m));
-  return Eigen::Vector3d(-dz_dx, -dz_dy, 1.0).normalized();
+  Eigen::Vector2d rise;
+  if (IsRamp()) {  // along its fall line, so that a turned board is the same board
+    const double past_edge_m = PastEdge(x_m, y_m);
+    rise = downhill_ *
+           slope(RampHeight(past_edge_m - kSlopeBase_m), RampHeight(past_edge_m + kSlopeBase_m));
+  } else {
+    rise = {slope(HeightAt(x_m - kSlopeBase_m, y_m), HeightAt(x_m + kSlopeBase_m, y_m)),
+            slope(HeightAt(x_m, y_m - kSlopeBase_m), HeightAt(x_m, y_m + kSlopeBase_m))};
+  }
+  return Eigen::Vector3d(-rise.x(), -rise.y(), 1.0).normalized();
 }
 
 Grip Terrain::GripAt(double x_m, double y_m) const {
@@ -135,23 +148,21 @@ std::optional<Plane> Terrain::PlaneNear(double x_m, double y_m, double reach_m) 
   if (surface_.shape == Shape::kFlat) {
     return Plane{{x_m, y_m, 0.0}, Eigen::Vector3d::UnitZ()};
   }
-  if (surface_.shape != Shape::kRampUp && surface_.shape != Shape::kRampDown) return std::nullopt;
-  const double sign = surface_.shape == Shape::kRampDown ? 1.0 : -1.0;
-  const double past_edge_m = sign * (x_m - surface_.ramp_edge_x_m);
+  if (!IsRamp()) return std::nullopt;
+  const double past_edge_m = PastEdge(x_m, y_m);
+  const double along_m = reach_m * downhill_.lpNorm<1>();  // of the square's corners
   const double bend_m = 0.5 * surface_.ramp_bend_m;
   const double foot_m = surface_.ramp_top_m / std::tan(surface_.ramp_rad);
   const double back_m = surface_.ramp_plateau_rad > 0.0
                             ? surface_.ramp_top_m / std::tan(surface_.ramp_plateau_rad)
                             : kEndless_m;
-  const bool sloped = past_edge_m > bend_m + reach_m && past_edge_m < foot_m - reach_m;
-  const bool plateau = past_edge_m < -bend_m - reach_m && past_edge_m > reach_m - back_m;
-  const bool floor = past_edge_m > foot_m + reach_m || past_edge_m < -back_m - reach_m;
+  const bool sloped = past_edge_m > bend_m + along_m && past_edge_m < foot_m - along_m;
+  const bool plateau = past_edge_m < -bend_m - along_m && past_edge_m > along_m - back_m;
+  const bool floor = past_edge_m > foot_m + along_m || past_edge_m < -back_m - along_m;
   if (!sloped && !plateau && !floor) return std::nullopt;
-  const double fall_rad = floor    ? 0.0
-                          : sloped ? sign * surface_.ramp_rad
-                                   : -sign * surface_.ramp_plateau_rad;
-  const Eigen::Vector3d normal(std::sin(fall_rad), 0.0, std::cos(fall_rad));
-  return Plane{{x_m, y_m, RampHeight(x_m)}, normal};
+  const double fall_rad = floor ? 0.0 : sloped ? surface_.ramp_rad : -surface_.ramp_plateau_rad;
+  const Eigen::Vector2d level = std::sin(fall_rad) * downhill_;
+  return Plane{{x_m, y_m, RampHeight(past_edge_m)}, {level.x(), level.y(), std::cos(fall_rad)}};
 }
 
 std::optional<std::vector<Block>> Terrain::BlocksNear(double x_m, double y_m,
@@ -179,9 +190,11 @@ bool Terrain::OnTable(double x_m, double y_m, double margin_m) const {
   return std::max(std::abs(x_m), std::abs(y_m)) + margin_m <= table_half_size_m_;
 }
 
-double Terrain::RampHeight(double x_m) const {
-  const double sign = surface_.shape == Shape::kRampDown ? 1.0 : -1.0;
-  const double past_edge_m = sign * (x_m - surface_.ramp_edge_x_m);
+double Terrain::PastEdge(double x_m, double y_m) const {
+  return downhill_.dot(Eigen::Vector2d(x_m - surface_.ramp_edge_x_m, y_m));
+}
+
+double Terrain::RampHeight(double past_edge_m) const {
   const double fall = std::tan(surface_.ramp_rad), rise = std::tan(surface_.ramp_plateau_rad);
   const double into_bend_m = past_edge_m + 0.5 * surface_.ramp_bend_m;
   double height_m = surface_.ramp_top_m + past_edge_m * (past_edge_m < 0.0 ? rise : -fall);

@@ -99,6 +99,25 @@ TEST_CASE("Turning and moving the whole scene turns and moves the run") {
   CHECK(off_m < 1e-9);
 }
 
+TEST_CASE("Turning the board with the rest of the scene turns the run") {
+  const std::string surface = GENERATE("downhill", "uphill");
+  const double turn_rad = GENERATE(0.25, -1.2);
+  SimulationOptions options = Robot(surface);
+  SurfaceOptions& board = options.terrain.surfaces[surface];
+  board.ramp_bend_m = GENERATE(0.0, 0.3);
+  board.ramp_plateau_rad = 0.1;
+  const Run here = Drive(options, PaperStart(), test::PaperWaypoints());
+  board.ramp_turn_rad = turn_rad;
+  const double edge_m = board.ramp_edge_x_m;
+  const geometry::Pose2 there_from_here{edge_m - edge_m * std::cos(turn_rad),
+                                        -edge_m * std::sin(turn_rad), turn_rad};
+  const Run there = Drive(options, there_from_here * PaperStart(),
+                          Moved(test::PaperWaypoints(), there_from_here));
+  CAPTURE(surface, turn_rad, board.ramp_bend_m);
+  CHECK(Farthest_m(there.path, here.path,
+                   [&](const geometry::Pose2& pose) { return there_from_here * pose; }) < 1e-9);
+}
+
 TEST_CASE("The mirror image of the scene gives the mirror image of the run") {
   const std::string surface = GENERATE("ground", "parchment", "downhill", "uphill", "bump");
   SimulationOptions options = Robot(surface), mirrored = options;
@@ -140,6 +159,7 @@ TEST_CASE("Halving the step hardly changes a run where the ground is smooth") {
     SurfaceOptions& board = options.terrain.surfaces["downhill"];
     board.ramp_plateau_rad = 0.1;
     board.ramp_bend_m = 0.3;
+    board.ramp_turn_rad = 0.2;
   }
   std::vector<double> parted_m;
   for (int run = 0; run < 15; ++run) {

@@ -1,5 +1,6 @@
 #include "rift/simulation/terrain.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -126,6 +127,47 @@ TEST_CASE("A plateau may rise towards the slope, which it meets at its full heig
       }
     }
     CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("A turned board is the same board turned about its edge at y = 0") {
+  const double turn_rad = GENERATE(0.25, -1.1), bend_m = GENERATE(0.0, 0.3), reach_m = 0.02;
+  const Eigen::Rotation2Dd board_from_straight(turn_rad);
+  for (const Shape shape : {Shape::kRampDown, Shape::kRampUp}) {
+    TerrainOptions options;
+    SurfaceOptions& board = options.surfaces["ground"];
+    board.shape = shape;
+    board.ramp_plateau_rad = 0.4;  // its foot 0.6 m behind the edge
+    board.ramp_bend_m = bend_m;
+    const Terrain straight(options);
+    board.ramp_turn_rad = turn_rad;
+    const Terrain turned(options);
+    int planes = 0, wrong = 0;
+    for (double x_m = -1.2; x_m < 1.2; x_m += 0.0137) {
+      for (const double y_m : {-0.4, 0.03, 0.7}) {
+        const Eigen::Vector2d at =
+            Eigen::Vector2d(board.ramp_edge_x_m, 0.0) +
+            board_from_straight * Eigen::Vector2d(x_m - board.ramp_edge_x_m, y_m);
+        wrong += std::abs(turned.HeightAt(at.x(), at.y()) - straight.HeightAt(x_m, y_m)) > 1e-12;
+        Eigen::Vector3d normal = straight.NormalAt(x_m, y_m);
+        normal.head<2>() = board_from_straight * normal.head<2>().eval();
+        wrong += (turned.NormalAt(at.x(), at.y()) - normal).norm() > 1e-9;
+        const auto plane = turned.PlaneNear(at.x(), at.y(), reach_m);
+        wrong += plane && !straight.PlaneNear(x_m, y_m, reach_m);
+        if (!plane) continue;
+        ++planes;
+        for (const double off_x_m : {-reach_m, reach_m}) {
+          for (const double off_y_m : {-reach_m, reach_m}) {
+            const Eigen::Vector2d corner = at + Eigen::Vector2d(off_x_m, off_y_m);
+            const Eigen::Vector3d point(corner.x(), corner.y(),
+                                        turned.HeightAt(corner.x(), corner.y()));
+            wrong += std::abs(plane->normal.dot(point - plane->point)) > 1e-12;
+          }
+        }
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(planes > 250);
   }
 }
 

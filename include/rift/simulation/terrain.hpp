@@ -40,6 +40,7 @@ struct SurfaceOptions {
   double ramp_edge_x_m = 0.05;
   double ramp_bend_m = 0.0;
   double ramp_plateau_rad = 0.0;
+  double ramp_turn_rad = 0.0;
   double bump_size_m = 0.020;
   double bump_pitch_m = 0.060;
   double bump_height_m = 0.004;
@@ -80,14 +81,20 @@ struct SurfaceOptions {
     field("ramp_top_m", self.ramp_top_m, 0.0, 2.0,
           "height of the plateau above the floor in m, at its edge (z in the downhill logs: 0.24)");
     field("ramp_edge_x_m", self.ramp_edge_x_m, -10.0, 10.0,
-          "x at which plateau and slope meet, in m (z of the logs, axle: downhill 0.05, uphill "
+          "x at which plateau and slope meet at y = 0, in m (z of the logs, axle: downhill 0.05, "
+          "uphill "
           "0.31)");
     field(
         "ramp_bend_m", self.ramp_bend_m, 0.0, 1.0,
         "length in x over which plateau turns into slope, evenly, the edge in its middle, in m; 0: "
         "a sharp edge (downhill, z beside that on flat ground: 0.22)");
     field("ramp_plateau_rad", self.ramp_plateau_rad, 0.0, 0.5,
-          "inclination of the plateau in rad: it rises towards the slope");
+          "inclination of the plateau in rad: it rises towards the slope (z and pitch in the "
+          "downhill logs: 0.03 to 0.15)");
+    field(
+        "ramp_turn_rad", self.ramp_turn_rad, -1.5, 1.5,
+        "angle from the x axis towards the y axis by which the board is turned, about its edge at "
+        "y = 0, in rad (roll on the slope of the downhill logs: 0.24; z there: 0)");
     field("bump_size_m", self.bump_size_m, 0.001, 1.0,
           "side of a block in m (paper's board: 0.02)");
     field("bump_pitch_m", self.bump_pitch_m, 0.002, 2.0,
@@ -211,12 +218,18 @@ class Terrain {
   bool IsStepped() const { return surface_.shape == Shape::kBumps; }
 
  private:
+  bool IsRamp() const {
+    return surface_.shape == Shape::kRampUp || surface_.shape == Shape::kRampDown;
+  }
   bool OnTable(double x_m, double y_m, double margin_m) const;
-  double RampHeight(double x_m) const;
+  /// How far downhill of the edge between plateau and slope a point lies, in m.
+  double PastEdge(double x_m, double y_m) const;
+  double RampHeight(double past_edge_m) const;
   double BumpHeight(double x_m, double y_m) const;
   double ImageHeight(double x_m, double y_m) const;
 
   SurfaceOptions surface_;
+  Eigen::Vector2d downhill_;  ///< unit vector, in x and y
   std::vector<PatchOptions> patches_;
   double table_half_size_m_;
   std::shared_ptr<const HeightImage> image_;
