@@ -2,12 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
 #include "rift/geometry/pose2.hpp"
+#include "rift/geometry/pose3.hpp"
 
 namespace rift::simulation {
 namespace {
@@ -20,7 +22,7 @@ enum Stream : std::uint64_t {
   kHostStream = 24
 };
 // Draws of a run and of a turn of the host; a normal value takes two.
-enum RunDraw : std::uint64_t { kRunNoise = 0, kRunPeriod = 2, kRunLateShare = 4 };
+enum RunDraw : std::uint64_t { kRunNoise = 0, kRunPeriod = 2, kRunLateShare = 4, kRunMirrored = 5 };
 enum TurnDraw : std::uint64_t { kWander = 0, kTurnJitter = 2, kLate = 4 };
 // Draws of one frame; a normal value takes two.
 enum Draw : std::uint64_t {
@@ -32,7 +34,8 @@ enum Draw : std::uint64_t {
   kRoll = 10,
   kPitch = 12,
   kDropout = 14,
-  kArrival = 16
+  kArrival = 16,
+  kMirrored = 18
 };
 
 constexpr double kClockTick_s = 1e-6;
@@ -61,12 +64,17 @@ double Speed_mps(const TruePose& before, const TruePose& after) {
   return std::hypot(after.x_m - before.x_m, after.y_m - before.y_m) / span_s;
 }
 
-Eigen::Vector3d TagInWorld(const TruePose& pose, const MocapOptions& options) {
+Eigen::Isometry3d TagInWorld(const TruePose& pose, const MocapOptions& options) {
+  const Eigen::AngleAxisd yaw(pose.yaw_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::AngleAxisd pitch(pose.pitch_rad, Eigen::Vector3d::UnitY());
+  const Eigen::AngleAxisd roll(pose.roll_rad, Eigen::Vector3d::UnitX());
   const Eigen::Vector3d tag_in_robot(options.tag_ahead_m, 0.0, options.tag_above_m);
-  return Eigen::Vector3d(pose.x_m, pose.y_m, pose.z_m) +
-         Eigen::AngleAxisd(pose.yaw_rad, Eigen::Vector3d::UnitZ()) *
-             (Eigen::AngleAxisd(pose.pitch_rad, Eigen::Vector3d::UnitY()) *
-              (Eigen::AngleAxisd(pose.roll_rad, Eigen::Vector3d::UnitX()) * tag_in_robot));
+  Eigen::Isometry3d world_from_tag;
+  world_from_tag.linear() = (yaw * pitch * roll).toRotationMatrix();
+  world_from_tag.translation() =
+      Eigen::Vector3d(pose.x_m, pose.y_m, pose.z_m) + yaw * (pitch * (roll * tag_in_robot));
+  world_from_tag.makeAffine();
+  return world_from_tag;
 }
 
 constexpr double kShortestPeriod_s = 0.005;
@@ -90,6 +98,7 @@ Mocap::Mocap(const MocapOptions& options, std::uint64_t seed)
       host_noise_(seed, kHostStream),
       standing_factor_(std::exp(options.noise_spread *
                                 statistics::CounterRandom(seed, kRunStream).Normal(0, kRunNoise))),
+      standing_mirrored_(statistics::CounterRandom(seed, kRunStream).Uniform(0, kRunMirrored)),
       phase_s_(options.rate_hz > 0.0
                    ? statistics::CounterRandom(seed, kPhaseStream).Uniform(0, 0) / options.rate_hz
                    : 0.0),
@@ -177,9 +186,25 @@ void Mocap::BeginTurn(double now_s) {
                            (late ? options_.host_late_s : 0.0));
 }
 
+bool Mocap::IsMirrored(const Eigen::Isometry3d& world_from_tag, double speed_mps,
+                       std::uint64_t frame) const {
+  double share = MirroredShare(options_.ambiguity, world_from_tag);
+  if (share <= 0.0) return false;
+  // The mean of u^k over u in [0, 1] is 1 / (k + 1).
+  if (speed_mps < kStanding_mps) share = std::pow(standing_mirrored_, 1.0 / share - 1.0);
+  return noise_.Uniform(frame, kMirrored) < share;
+}
+
 trial::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,
                                       std::uint64_t frame) const {
-  const Eigen::Vector3d tag_in_world = TagInWorld(pose, options_);
+  Eigen::Isometry3d world_from_tag = TagInWorld(pose, options_);
+  std::array<double, 3> angles_rad{pose.roll_rad, pose.pitch_rad, pose.yaw_rad};
+  if (IsMirrored(world_from_tag, speed_mps, frame)) {
+    world_from_tag = Mirrored(options_.ambiguity, world_from_tag);
+    angles_rad = geometry::RollPitchYaw(world_from_tag.linear());
+  }
+  const auto [roll_rad, pitch_rad, yaw_rad] = angles_rad;
+  const Eigen::Vector3d tag_in_world = world_from_tag.translation();
   const double factor = speed_mps < kStanding_mps ? standing_factor_ : 1.0;
   const double across_m =
       std::hypot(factor * options_.noise_across_m, options_.blur_across_s * speed_mps) *
@@ -188,13 +213,13 @@ trial::PoseMeasurement Mocap::Measure(const TruePose& pose, double speed_mps,
   const double yaw_noise_rad =
       std::hypot(factor * options_.noise_yaw_rad, options_.blur_yaw_rad_per_mps * speed_mps) *
       noise_.HeavyTailed(frame, kYaw, options_.yaw_tail_dof);
-  const geometry::Pose2 world_from_tag{tag_in_world.x(), tag_in_world.y(), pose.yaw_rad};
+  const geometry::Pose2 tag{tag_in_world.x(), tag_in_world.y(), yaw_rad};
   trial::PoseMeasurement measurement;
   measurement.captured_s = pose.t_s + options_.stamp_jitter_s * noise_.Normal(frame, kStamp);
-  measurement.world_from_robot = world_from_tag * geometry::Pose2{along_m, across_m, yaw_noise_rad};
+  measurement.world_from_robot = tag * geometry::Pose2{along_m, across_m, yaw_noise_rad};
   measurement.z_m = tag_in_world.z() + options_.noise_z_m * noise_.Normal(frame, kHeight);
-  measurement.roll_rad = pose.roll_rad + options_.noise_tilt_rad * noise_.Normal(frame, kRoll);
-  measurement.pitch_rad = pose.pitch_rad + options_.noise_tilt_rad * noise_.Normal(frame, kPitch);
+  measurement.roll_rad = roll_rad + options_.noise_tilt_rad * noise_.Normal(frame, kRoll);
+  measurement.pitch_rad = pitch_rad + options_.noise_tilt_rad * noise_.Normal(frame, kPitch);
   return measurement;
 }
 

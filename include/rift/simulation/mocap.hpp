@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 
+#include "rift/simulation/tilt_ambiguity.hpp"
 #include "rift/statistics/random.hpp"
 #include "rift/trial/robot.hpp"
 
@@ -47,6 +48,7 @@ struct MocapOptions {
   double dropout = 0.0;
   double tag_ahead_m = 0.0;
   double tag_above_m = 0.0;
+  AmbiguityOptions ambiguity;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
   template <class Self, class Visitor>
@@ -115,6 +117,7 @@ struct MocapOptions {
           "tag centre ahead of the axle's middle in m (identify)");
     field("tag_above_m", self.tag_above_m, -0.2, 0.2,
           "tag centre above the axle's middle in m (identify)");
+    field("ambiguity", self.ambiguity, "a tag whose tilt is mirrored at the line of sight");
   }
 };
 
@@ -145,12 +148,15 @@ class Mocap {
   void RunHost(double until_s);
   void BeginTurn(double now_s);
   void EndTurn();
+  bool IsMirrored(const Eigen::Isometry3d& world_from_tag, double speed_mps,
+                  std::uint64_t frame) const;
   trial::PoseMeasurement Measure(const TruePose& pose, double speed_mps, std::uint64_t frame) const;
 
   MocapOptions options_;  ///< with what this run drew of the host's period and its late turns
   statistics::CounterRandom noise_;
   statistics::CounterRandom host_noise_;
-  double standing_factor_;  ///< of this run's scatters while it stands
+  double standing_factor_;    ///< of this run's scatters while it stands
+  double standing_mirrored_;  ///< in [0, 1): how often its tag is mirrored while it stands
   double phase_s_;
   std::uint64_t next_frame_ = 0;
   double last_stamp_s_;
