@@ -191,13 +191,14 @@ std::optional<ContactPoint> BallContactPoint(const Terrain& terrain, const Vecto
 }
 
 std::optional<ContactPoint> RimContactPoint(const Terrain& terrain, const Vector3d& centre,
-                                            const Vector3d& up, double radius_m) {
+                                            const Vector3d& forward, const Vector3d& up,
+                                            double radius_m) {
   if (const auto plane = terrain.PlaneNear(centre.x(), centre.y(), radius_m)) {
     const Vector3d point = centre + radius_m * Lowest(up, plane->normal);
     return IfDeep(point, plane->normal, plane->normal.dot(plane->point - point));
   }
   std::optional<ContactPoint> deepest;
-  const Vector3d forward = up.unitOrthogonal(), left = up.cross(forward);
+  const Vector3d left = up.cross(forward);
   for (int i = 0; i < kRimPoints; ++i) {
     const double angle_rad = 2.0 * std::numbers::pi * i / kRimPoints;
     const Vector3d point =
@@ -260,7 +261,8 @@ void AddRimContacts(const ContactScene& scene, std::vector<GroundContact>& conta
   const RoundEdge edge{rim + kRimRoundness_m * up, up, body.chassis_radius_m - kRimRoundness_m,
                        kRimRoundness_m};
   if (AddContactsWithBlocks(scene, edge, add)) return;
-  const auto contact = RimContactPoint(scene.terrain, rim, up, body.chassis_radius_m);
+  const Vector3d forward = state.world_from_robot.col(0);
+  const auto contact = RimContactPoint(scene.terrain, rim, forward, up, body.chassis_radius_m);
   if (contact) add(*contact);
 }
 

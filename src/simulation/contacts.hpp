@@ -30,8 +30,10 @@ std::optional<ContactPoint> WheelContactPoint(const Terrain& terrain, const Eige
 std::optional<ContactPoint> BallContactPoint(const Terrain& terrain, const Eigen::Vector3d& centre,
                                              const Eigen::Vector3d& forward, double radius_m);
 
-/// The lowest edge of a disc of the chassis, whose axis is the unit vector `up`.
+/// The lowest edge of a disc of the chassis, whose axis is the unit vector `up`. On ground that is
+/// no plane eight points of the edge are looked at, the first towards the unit vector `forward`.
 std::optional<ContactPoint> RimContactPoint(const Terrain& terrain, const Eigen::Vector3d& centre,
+                                            const Eigen::Vector3d& forward,
                                             const Eigen::Vector3d& up, double radius_m);
 
 /// Where the robot touches the ground and how well it holds there. Friction acts along `direction`

@@ -150,15 +150,14 @@ std::optional<Plane> Terrain::PlaneNear(double x_m, double y_m, double reach_m) 
   }
   if (!IsRamp()) return std::nullopt;
   const double past_edge_m = PastEdge(x_m, y_m);
-  const double along_m = reach_m * downhill_.lpNorm<1>();  // of the square's corners
   const double bend_m = 0.5 * surface_.ramp_bend_m;
   const double foot_m = surface_.ramp_top_m / std::tan(surface_.ramp_rad);
   const double back_m = surface_.ramp_plateau_rad > 0.0
                             ? surface_.ramp_top_m / std::tan(surface_.ramp_plateau_rad)
                             : kEndless_m;
-  const bool sloped = past_edge_m > bend_m + along_m && past_edge_m < foot_m - along_m;
-  const bool plateau = past_edge_m < -bend_m - along_m && past_edge_m > along_m - back_m;
-  const bool floor = past_edge_m > foot_m + along_m || past_edge_m < -back_m - along_m;
+  const bool sloped = past_edge_m > bend_m + reach_m && past_edge_m < foot_m - reach_m;
+  const bool plateau = past_edge_m < -bend_m - reach_m && past_edge_m > reach_m - back_m;
+  const bool floor = past_edge_m > foot_m + reach_m || past_edge_m < -back_m - reach_m;
   if (!sloped && !plateau && !floor) return std::nullopt;
   const double fall_rad = floor ? 0.0 : sloped ? surface_.ramp_rad : -surface_.ramp_plateau_rad;
   const Eigen::Vector2d level = std::sin(fall_rad) * downhill_;

@@ -41,11 +41,11 @@ TEST_CASE("A ball and a rim on a plane touch with their point farthest down its 
   CHECK_FALSE(BallContactPoint(terrain, ground + 0.0151 * normal, Vector3d::UnitX(), 0.015));
   // A disc that stands upright on its edge, across the slope.
   const Vector3d up = Vector3d::UnitY();
-  const auto rim = RimContactPoint(terrain, ground + 0.0399 * normal, up, 0.04);
+  const auto rim = RimContactPoint(terrain, ground + 0.0399 * normal, Vector3d::UnitX(), up, 0.04);
   REQUIRE(rim);
   CHECK(rim->depth_m == Approx(1e-4));
   CHECK((rim->point - (ground - 1e-4 * normal)).norm() < 1e-9);
-  CHECK_FALSE(RimContactPoint(terrain, ground + 0.0401 * normal, up, 0.04));
+  CHECK_FALSE(RimContactPoint(terrain, ground + 0.0401 * normal, Vector3d::UnitX(), up, 0.04));
 }
 
 TEST_CASE("On ground that is no plane a ball leans as the ground does, whichever way it looks") {
@@ -71,13 +71,14 @@ TEST_CASE("A level rim over ground that is no plane touches where the ground is 
   // Of eight points about the middle the one at 45 degrees is the highest: 0.04 m ahead and left.
   const double radius_m = 0.04, along_m = radius_m / std::sqrt(2.0);
   const double highest_m = terrain.HeightAt(along_m, along_m);
-  const auto rim =
-      RimContactPoint(terrain, {0.0, 0.0, highest_m - 1e-3}, Vector3d::UnitZ(), radius_m);
+  const auto rim = RimContactPoint(terrain, {0.0, 0.0, highest_m - 1e-3}, Vector3d::UnitX(),
+                                   Vector3d::UnitZ(), radius_m);
   REQUIRE(rim);
   CHECK(rim->depth_m == Approx(1e-3));
   CHECK((rim->point - Vector3d(along_m, along_m, highest_m - 1e-3)).norm() < 1e-9);
   CHECK((rim->normal - kSlantedNormal).norm() < 1e-6);
-  CHECK_FALSE(RimContactPoint(terrain, {0.0, 0.0, highest_m + 1e-6}, Vector3d::UnitZ(), radius_m));
+  CHECK_FALSE(RimContactPoint(terrain, {0.0, 0.0, highest_m + 1e-6}, Vector3d::UnitX(),
+                              Vector3d::UnitZ(), radius_m));
 }
 
 TEST_CASE("A wheel that hangs over the edge of a table rests on its corner") {

@@ -116,8 +116,8 @@ TEST_CASE("A drive over ridges of twenty degrees ends where it did") {
       1.0, 0.04 * std::tan(M_PI / 18.0), 1001, 0.8,
       [](double x_m, double) { return std::abs(std::fmod(x_m + 10.013, 0.08) - 0.04) / 0.04; });
   CheckEnd(OdeWorld(BodyOptions{}, ridges, {-0.03, 0.0, 0.3}, kStep_s), 120,
-           {0.0207501854, 0.0321186035, 0.0200902012, 0.9896566962, -0.0441976699, -0.0046016260,
-            5.8474447865, 7.4904519121});
+           {0.0128580009, 0.0296514383, 0.0187542786, 0.9980069808, -0.0417923353, 0.0082510032,
+            5.6611819399, 7.2992650425});
 }
 
 TEST_CASE("A robot whose upper wheel carries hardly anything drives across a slope as it did") {
@@ -150,7 +150,7 @@ TEST_CASE("A robot that begins inside of blocks comes out of them as it did") {
 
 TEST_CASE("A robot that slides off its place each time is put down six times") {
   CheckEnd(OdeWorld(BodyOptions{}, HighWaves(0.02), {0.037, -0.052, 0.7}, kStep_s), 0,
-           {0.0375493932, -0.0517863601, 0.0257676371, 0.7611469274, -0.0570099191, 0.1935471978,
+           {0.0369705019, -0.0520681820, 0.0258540275, 0.7592441087, -0.1168765375, 0.1919186231,
             0.0, 0.0});
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "simulation/contacts.hpp"
 #include "simulation/heightfield_options.hpp"
@@ -153,16 +154,15 @@ TEST_CASE("A turned board is the same board turned about its edge at y = 0") {
         normal.head<2>() = board_from_straight * normal.head<2>().eval();
         wrong += (turned.NormalAt(at.x(), at.y()) - normal).norm() > 1e-9;
         const auto plane = turned.PlaneNear(at.x(), at.y(), reach_m);
-        wrong += plane && !straight.PlaneNear(x_m, y_m, reach_m);
+        wrong += plane.has_value() != straight.PlaneNear(x_m, y_m, reach_m).has_value();
         if (!plane) continue;
         ++planes;
-        for (const double off_x_m : {-reach_m, reach_m}) {
-          for (const double off_y_m : {-reach_m, reach_m}) {
-            const Eigen::Vector2d corner = at + Eigen::Vector2d(off_x_m, off_y_m);
-            const Eigen::Vector3d point(corner.x(), corner.y(),
-                                        turned.HeightAt(corner.x(), corner.y()));
-            wrong += std::abs(plane->normal.dot(point - plane->point)) > 1e-12;
-          }
+        for (int corner = 0; corner < 8; ++corner) {
+          const Eigen::Vector2d there =
+              at + reach_m * (Eigen::Rotation2Dd(0.25 * std::numbers::pi * corner) *
+                              Eigen::Vector2d::UnitX());
+          const Eigen::Vector3d point(there.x(), there.y(), turned.HeightAt(there.x(), there.y()));
+          wrong += std::abs(plane->normal.dot(point - plane->point)) > 1e-12;
         }
       }
     }

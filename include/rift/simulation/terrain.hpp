@@ -208,7 +208,8 @@ class Terrain {
   /// Unit normal, upwards.
   Eigen::Vector3d NormalAt(double x_m, double y_m) const;
   Grip GripAt(double x_m, double y_m) const;
-  /// The ground when it is one plane everywhere within `reach_m` of the point in x and in y.
+  /// The ground when it is one plane everywhere within `reach_m` of the point; a table ends at that
+  /// distance in x or in y.
   std::optional<Plane> PlaneNear(double x_m, double y_m, double reach_m) const;
   /// The blocks that reach into a square of half this size about the point; none for a ground
   /// without blocks, where a table ends there, and where more than 8 of them stand in a row.
