@@ -17,6 +17,7 @@ AmbiguityOptions Logs() {
   options.share = 0.4;
   options.x_m = -0.28;
   options.y_m = -0.07;
+  options.reach_m = 0.15;
   options.camera_x_m = -0.04;
   options.camera_z_m = 0.88;
   return options;
