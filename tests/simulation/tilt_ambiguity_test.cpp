@@ -1,11 +1,11 @@
 #include "rift/simulation/tilt_ambiguity.hpp"
 
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "rift/geometry/pose3.hpp"
+#include "rift/statistics/descriptive.hpp"
 #include "simulation/quiet_mocap.hpp"
 
 namespace rift::simulation {
@@ -119,16 +119,11 @@ std::vector<double> SharesOf(double speed_mps) {
 TEST_CASE("A moving tag is mirrored picture by picture, a standing one as often as its run says") {
   for (const double speed_mps : {0.05, 0.0}) {
     const std::vector<double> shares = SharesOf(speed_mps);
-    double mean = 0.0, square = 0.0;
-    for (const double share : shares) {
-      mean += share / 300.0;
-      square += share * share / 300.0;
-    }
     CAPTURE(speed_mps);
-    CHECK(mean == Approx(0.4).margin(0.06));
-    const double spread = std::sqrt(square - mean * mean);
+    CHECK(statistics::Mean(shares) == Approx(0.4).margin(0.06));
     // Of 100 even draws 0.049; of u^1.5 with even u the standard deviation is 0.3.
-    CHECK(spread == Approx(speed_mps > 0.0 ? 0.049 : 0.3).epsilon(0.15));
+    CHECK(statistics::StandardDeviation(shares) ==
+          Approx(speed_mps > 0.0 ? 0.049 : 0.3).epsilon(0.15));
   }
 }
 
