@@ -90,17 +90,21 @@ TEST_CASE("What a session on a surface has of its own stands beside what the rob
                                  &MocapOptions::blur_yaw_rad_per_mps, &MocapOptions::noise_z_m,
                                  &MocapOptions::noise_tilt_rad};
   for (const auto scatter : kScatters) options.mocap.*scatter = 0.002;
+  options.mocap.ambiguity.share = 0.5;
   options.motor.mismatch = 0.03;
   SurfaceOptions& surface = options.terrain.surfaces["cardboard"];
   surface.host_period_s = 0.06;
   surface.tracker_noise = 1.5;
+  surface.mirrored_share = 0.4;
   surface.session_mismatch = -0.01;
   CHECK(*options.MocapOfSession().host_period_s == 0.05);
   for (const auto scatter : kScatters) CHECK(options.MocapOfSession().*scatter == 0.002);
+  CHECK(options.MocapOfSession().ambiguity.share == 0.5);
   CHECK(options.MotorOfSession().mismatch == 0.03);
   options.terrain.surface = "cardboard";
   CHECK(*options.MocapOfSession().host_period_s == 0.06);
   for (const auto scatter : kScatters) CHECK(options.MocapOfSession().*scatter == Approx(0.003));
+  CHECK(options.MocapOfSession().ambiguity.share == Approx(0.2));
   CHECK(options.MocapOfSession().stamp_jitter_s == options.mocap.stamp_jitter_s);
   CHECK(options.MotorOfSession().mismatch == Approx(0.02));
   options.mocap.host_period_s.reset();

@@ -34,6 +34,7 @@ struct SurfaceOptions {
   double unevenness = 0.0;
   std::optional<double> host_period_s;
   double tracker_noise = 1.0;
+  double mirrored_share = 1.0;
   double session_mismatch = 0.0;
   double ramp_rad = 0.255;
   double ramp_top_m = 0.24;
@@ -73,6 +74,10 @@ struct SurfaceOptions {
     field("tracker_noise", self.tracker_noise, 0.0, 20.0,
           "scatter of the measured pose in the session on this surface, as a multiple of that of "
           "mocap: light, distance from the camera");
+    field(
+        "mirrored_share", self.mirrored_share, 0.0, 1.0,
+        "mocap.ambiguity.share in the session on this surface, as a share of that of mocap (logs: "
+        "0.22 of the pictures on ground, 0.45 to 0.51 on cardboard, parchment and bumps)");
     field("session_mismatch", self.session_mismatch, -0.5, 0.5,
           "motor.mismatch in the session on this surface less motor.mismatch: another battery, "
           "cleaned wheels");
