@@ -25,14 +25,14 @@ struct AmbiguityOptions {
   static void Fields(Self& self, Visitor&& field) {
     field("share", self.share, 0.0, 0.9,
           "share of the pictures of a tag at x_m, y_m in which its tilt is mirrored at the line of "
-          "sight; a robot that stands draws its own, of this mean (logs on flat ground: 0.45)");
+          "sight; a robot that stands draws its own, of this mean (logs on flat ground: 0.52)");
     field(
         "x_m", self.x_m, -100.0, 100.0,
-        "where in the camera's view that happens most often, in m (logs: -0.24, near their start)");
+        "where in the camera's view that happens most often, in m (logs: -0.22, near their start)");
     field("y_m", self.y_m, -100.0, 100.0, "the same in y, in m (logs: -0.07)");
     field("reach_m", self.reach_m, 0.001, 100.0,
           "at this distance from there the share is 0.61 of that, further away it falls as a bell "
-          "curve does, in m (logs: 0.09)");
+          "curve does, in m (logs: 0.08)");
     field("angle_rad", self.angle_rad, 0.0, 1.6,
           "between line of sight and the tag's normal in rad; beyond it nothing is mirrored (logs: "
           "0.28 is)");
