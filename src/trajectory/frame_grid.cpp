@@ -287,7 +287,9 @@ OnFrames PutOnFrames(Trajectory log, double fps) {
   if (!grid.is_found) return result;
   const double zero_s = result.trajectory.poses.front().t_s;
   for (size_t i = 0; i < stamps_s.size(); ++i) {
-    result.trajectory.poses[i].t_s = zero_s + stamps_s[i];
+    StampedPose& pose = result.trajectory.poses[i];
+    pose.stamp_s = pose.t_s;
+    pose.t_s = zero_s + stamps_s[i];
   }
   return result;
 }

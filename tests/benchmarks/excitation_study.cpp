@@ -125,7 +125,7 @@ class Study {
 
     sweep::CalibrationOptions options;
     options.runs = 0;
-    options.horizon.phases = 4;
+    options.horizon.phases = 12;
     const sweep::Calibration of_logs = Fit(logs, options), of_both = Fit(both, options);
     const sweep::Calibration of_program = Fit(program, options);
     for (size_t i = 0; i < truth.size(); ++i) {

@@ -51,7 +51,7 @@ int Study(std::map<std::string, int> asked) {
 
 int main(int count, char** arguments) {
   std::map<std::string, int> asked{{"--repeats", 20}, {"--first", 1}, {"--logs", 12},
-                                   {"--phases", 4},   {"--runs", 0},  {"--iterations", 12},
+                                   {"--phases", 12},  {"--runs", 0},  {"--iterations", 12},
                                    {"--threads", 1}};
   try {
     for (int i = 1; i + 1 < count; i += 2) asked.at(arguments[i]) = std::stoi(arguments[i + 1]);

@@ -80,6 +80,7 @@ TEST_CASE("The mean of the stamps stays, they rise, and nothing but them changes
   for (size_t i = 0; i < after.poses.size(); ++i) {
     change_s += after.poses[i].t_s - made.log.poses[i].t_s;
     CHECK(after.poses[i].x_m == made.log.poses[i].x_m);
+    CHECK(after.poses[i].Stamp_s() == made.log.poses[i].t_s);  // it is still known when it acted
     if (i > 0) CHECK(after.poses[i].t_s > after.poses[i - 1].t_s);
   }
   CHECK(change_s / static_cast<double>(after.poses.size()) == Approx(0.0).margin(1e-9));
@@ -132,6 +133,7 @@ TEST_CASE("A log without a grid keeps its stamps") {
   CHECK(result.grid.Text().find("no frame grid") == 0);
   for (size_t i = 0; i < log.poses.size(); ++i) {
     CHECK(result.trajectory.poses[i].t_s == log.poses[i].t_s);
+    CHECK(result.trajectory.poses[i].Stamp_s() == log.poses[i].t_s);
   }
 }
 

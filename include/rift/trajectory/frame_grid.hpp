@@ -28,7 +28,8 @@ struct FrameGrid {
 /// at stamps that are 60 ms apart: speeds from row to row jump by a factor of two. Here each row
 /// gets the frame that makes the speeds change least, from those within about a frame of its stamp
 /// (Viterbi over the rows; period within 0.2 % and phase by search), as if all poses were equally
-/// old. The mean of all stamps stays: a constant delay cannot be seen.
+/// old. The mean of all stamps stays: a constant delay cannot be seen. Each pose keeps its stamp
+/// as logged in stamp_s: that is when the loop acted.
 ///
 /// Nothing is changed unless the speeds become smoother by `kLeastSmoother`, since a grid that is
 /// not there makes them rougher, and unless grids of rates 10 % off explain less; nor for fewer

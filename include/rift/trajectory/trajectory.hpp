@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
@@ -24,6 +25,10 @@ struct StampedPose {
   double yaw_rad = kNotLogged;
   double target_x_m = kNotLogged;  ///< the waypoint the controller drove to at this moment
   double target_y_m = kNotLogged;
+  double stamp_s = kNotLogged;  ///< as logged, where t_s was moved to a frame (PutOnFrames)
+
+  /// The time stamp of the log, whatever t_s was moved to.
+  double Stamp_s() const { return std::isnan(stamp_s) ? t_s : stamp_s; }
 
   Eigen::Vector2d Position() const { return {x_m, y_m}; }
   Eigen::Vector3d PositionInSpace() const { return {x_m, y_m, z_m}; }

@@ -14,6 +14,7 @@
 #include "rift/experiment/parameter.hpp"
 #include "rift/experiment/program_parameters.hpp"
 #include "rift/statistics/random.hpp"
+#include "rift/sweep/calibrate/short_horizon.hpp"
 #include "rift/sweep/falsify/doubts.hpp"
 #include "rift/sweep/falsify/result.hpp"
 #include "rift/sweep/falsify/settings.hpp"
@@ -171,8 +172,10 @@ void Identifier::NoteDoubts(const Recording& real) {
 void Identifier::SayDoubtsOfLogs() const {
   std::vector<LogOfTask> logs;
   for (const Entry& entry : entries_) {
-    LogOfTask& one = logs.emplace_back(LogOfTask{entry.log.name, &entry.log.log, {}, 0.0});
+    LogOfTask& one = logs.emplace_back(LogOfTask{.source = entry.log.name, .log = &entry.log.log});
+    one.group = entry.log.group;
     if (IsProgram()) continue;
+    one.way_ratio = WayRatio(TwinOf(entry, StartValues(), 0), entry.log.log, entry.log.began_s);
     const experiment::Experiment at = experiment::ExperimentAt(experiment_, entry.theta);
     one.waypoints = at.waypoints;
     one.reach_radius_m = at.control.reach_radius_m;

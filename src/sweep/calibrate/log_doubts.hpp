@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,14 @@ struct LogOfTask {
   const trajectory::Trajectory* log;         ///< outlives this
   std::vector<control::Waypoint> waypoints;  ///< none: the task has none
   double reach_radius_m = 0.0;
+  std::string group = "";                                       ///< logs of one are compared
+  double way_ratio = std::numeric_limits<double>::quiet_NaN();  ///< WayRatio; NaN: not known
 };
 
 /// What makes logs doubtful for a fit though each looks sound, a line each that names its log: one
 /// that does not come near to a waypoint, which its controller must have passed within the reach
-/// radius, and one that is a copy of another; said of the first, with how many more there are.
+/// radius, one that is a copy of another, and one that was faster or slower than the commands of
+/// its setting make the others of its group; said of the first, with how many more there are.
 std::vector<std::string> DoubtsOfLogs(const std::vector<LogOfTask>& logs);
 
 }  // namespace rift::sweep

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -99,6 +100,32 @@ TEST_CASE("A waypoint is missed from twice the reach radius on, to any side, and
             "another task, in another frame or cut short, and the fit drives this task",
             "a.csv: it has the rows of a.csv: one drive that counts as two makes the intervals too "
             "narrow"});
+}
+
+TEST_CASE("A log that was driven with another speed than those of its group is named with it") {
+  std::vector<trajectory::Trajectory> paths;
+  for (int i = 0; i < 6; ++i) {
+    paths.push_back(LogOf({{0.0, 0.0}, {0.3, 0.1 + 0.001 * i}, {0.6, 0.1}}));
+  }
+  std::vector<LogOfTask> logs;
+  for (int i = 0; i < 6; ++i) {
+    logs.push_back(Of(std::string(1, static_cast<char>('a' + i)) + ".csv", paths[i]));
+    logs.back().group = "ground";
+    logs.back().way_ratio = 1.1 + 0.01 * i;
+  }
+  CHECK(DoubtsOfLogs(logs).empty());
+  logs[2].way_ratio = 0.8;
+  const auto doubts = DoubtsOfLogs(logs);
+  REQUIRE(doubts.size() == 1);
+  CHECK_THAT(doubts[0], StartsWith("c.csv: under the commands of its setting the simulator drives "
+                                   "0.80 times as far as this log, and 1.12 times as the other "
+                                   "logs of ground: "));
+  logs[4].way_ratio = 1.4;
+  CHECK_THAT(DoubtsOfLogs(logs)[0], StartsWith("c.csv (and 1 more log): "));
+  logs[4].way_ratio =
+      NAN;  // not known: it is not judged, and too few are left to say what is usual
+  logs[5].group = "parchment";
+  CHECK(DoubtsOfLogs(logs).empty());
 }
 
 }  // namespace

@@ -73,6 +73,39 @@ TEST_CASE("A simulator predicts its own log, and a stronger motor drives further
   CHECK(mean_of(slow).ahead_m > own.ahead_m + 5e-4);
 }
 
+TEST_CASE("A log tells the phase of its robot's listener, and with it the delay of the link") {
+  ShortHorizonOptions horizon{.most_frames = 1, .phases = 16, .moved_m = 0.02};
+  const auto size = [&](const SimulatedTrial& twin, const Trajectory& log) {
+    double sum = 0.0;
+    for (const HorizonError& one : ShortHorizonErrors(twin, log, horizon)) {
+      sum += std::abs(one.turned_rad);
+    }
+    return sum;
+  };
+  for (const double phase : {0.1, 0.4, 0.85}) {
+    SimulatedTrial robot = Exact(), other = Exact();
+    robot.simulation.link.poll_phase = phase;
+    const Trajectory log = Simulate(robot).result.trajectory;
+    const double own = size(Exact(), log);
+    for (const double apart_s : {-0.03, 0.03}) {
+      other.simulation.link.delay_s = Exact().simulation.link.delay_s + apart_s;
+      CAPTURE(phase, apart_s, own);
+      CHECK(size(other, log) > 1.25 * own);
+    }
+  }
+}
+
+TEST_CASE("The way ratio is one of a simulator's own log, and of a faster robot less") {
+  const Trajectory& log = Log();
+  CHECK(WayRatio(Exact(), log) == Approx(1.0).margin(0.02));
+  SimulatedTrial fast = Exact();
+  fast.control.v_min = 0.2;
+  CHECK(WayRatio(Exact(), Simulate(fast).result.trajectory) < 0.9);
+  Trajectory stands = log;
+  for (auto& pose : stands.poses) pose = {.t_s = pose.t_s, .yaw_rad = 0.0};
+  CHECK(std::isnan(WayRatio(Exact(), stands)));
+}
+
 TEST_CASE("Errors are seen from the logged pose: a log turned in the plane has the same") {
   const auto errors = ShortHorizonErrors(Exact(), Log(), kHorizon);
   SimulatedTrial turned = Exact();

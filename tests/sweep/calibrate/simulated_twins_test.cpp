@@ -113,7 +113,7 @@ TEST_CASE("Simulated logs and runs have their stamps on the frames that those of
   };
   SimulatedTwins simulator(twin, 1);
   CalibrationOptions options;
-  options.horizon.phases = 0;
+  options.horizon.phases = 1;
   options.runs = 1;
   std::vector<CalibrationLog> logs(4);
   std::vector<SimulatedRun> runs;  // that predict: a log has the seed of the first

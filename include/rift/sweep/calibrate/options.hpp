@@ -4,7 +4,7 @@ namespace rift::sweep {
 
 struct ShortHorizonOptions {
   int most_frames = 5;
-  int phases = 8;
+  int phases = 16;
   double moved_m = 0.02;
 
   /// Calls field(key, member, [min, max,] help) for every member; min and max are inclusive.
@@ -14,8 +14,8 @@ struct ShortHorizonOptions {
           "motions over 1 to this many frames are predicted; less than the loop delay, so that the "
           "log alone decides what the robot was told");
     field("phases", self.phases, 1, 1000,
-          "replays of a log whose mean is the prediction: nobody knows the phase of the robot's "
-          "listener");
+          "replays of a log, each with another phase of the robot's listener, whose mean is the "
+          "prediction, weighted by how likely the log is with each");
     field("moved_m", self.moved_m, 0.0, 10.0,
           "a log counts from where the robot is this far from its start");
   }
