@@ -6,6 +6,7 @@
 
 #include "rift/control/waypoint.hpp"
 #include "rift/sweep/falsify/simulated_trial.hpp"
+#include "rift/trajectory/frame_grid.hpp"
 #include "rift/yaml/bind.hpp"
 
 namespace rift::test {
@@ -74,8 +75,12 @@ sweep::Calibration FindPlanted(const GridStudy& robot, const std::vector<Planted
     v_min.push_back(i % 2 == 0 ? 0.15 : 0.20);
     const std::uint64_t seed = random();
     const auto run = sweep::Simulate(TrialOf(real, v_min.back(), PutDown(real, random), seed));
-    recorded.push_back(
-        {fmt::format("log {}", i), fmt::format("{}", v_min.back()), run.result.trajectory});
+    // As configs/calibrate.yaml reads logs of this host.
+    constexpr double kGrid_fps = 30.0;
+    recorded.push_back({.name = fmt::format("log {}", i),
+                        .setting = fmt::format("{}", v_min.back()),
+                        .log = trajectory::OnFramesOf(run.result.trajectory, kGrid_fps),
+                        .drives_grid_fps = kGrid_fps});
   }
   const sweep::TwinAt twin = [&](size_t log, const std::vector<double>& values) {
     const GridStudy at = RobotAt(robot, planted, values);

@@ -174,11 +174,11 @@ TEST_CASE("The window of a calibration is the pinned one") {
                           .taken = &taken,
                           .board = {.columns = 4, .rows = 3, .square_m = 0.03},
                           .coverage = {.x = 0.3, .y = 0.9, .size = 0.0, .skew = 0.6},
-                          .next = {{0.7, 0.3, 0.4, 0.3}, "to the right and tilted"},
-                          .advice = "hold it still",
                           .takes_by_itself = false,
                           .good_views = 12,
                           .good_coverage = 0.7};
+  scene.next = {{0.7, 0.3, 0.4, 0.3}, "to the right and tilted"};
+  scene.advice = "hold it still";
   CHECK(DifferenceFromPinnedPicture("view/calibration.png", DrawCalibrating(scene)) == "");
   scene.next = {};
   scene.takes_by_itself = true;
