@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -18,6 +19,7 @@ namespace {
 constexpr double kConverged = 5e-3;  // of the range, for the largest change of a parameter
 constexpr double kFirstDamping = 1e-2;
 constexpr double kLargestDamping = 1e6;
+constexpr std::array kSearchSpans{0.1, 0.05, 0.02};  // of the range
 
 Eigen::VectorXd SharesOfStart(const std::vector<experiment::FreeParameter>& parameters) {
   Eigen::VectorXd shares(static_cast<Eigen::Index>(parameters.size()));
@@ -50,6 +52,7 @@ class Fit {
  private:
   using Part = CalibrationProgress::Part;
   void Descend(Calibration& result, const CalibrationStep& on_step, Part part);
+  void SearchAlong();
   void DescendByMotions(Calibration& result, const CalibrationStep& on_step);
   void Tell(const CalibrationStep& on_step, Part part, int step, int most) const;
   bool Improve();
@@ -138,6 +141,31 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step, Part part
   }
 }
 
+/// Along one parameter after the other, over ever shorter spans, to where a parabola through three
+/// losses is least: what a log tells of a delay lies within the leaps that slopes have to see past.
+void Fit::SearchAlong() {
+  const auto loss_at = [&](const Eigen::VectorXd& shares) {
+    return SquaredSum(model_.ErrorsAt(shares, scale_)) + prior_.LossAt(shares);
+  };
+  double loss = loss_at(shares_);
+  for (const double span : kSearchSpans) {
+    for (Eigen::Index k = 0; k < shares_.size(); ++k) {
+      const auto along = [&](double by) {
+        return Moved(by * Eigen::VectorXd::Unit(shares_.size(), k));
+      };
+      const double below = loss_at(along(-span)), above = loss_at(along(span));
+      const double curvature = below + above - 2.0 * loss;
+      double by = below < above ? -span : span;
+      if (curvature > 0.0) by = std::clamp(0.5 * span * (below - above) / curvature, -span, span);
+      const Eigen::VectorXd tried = along(by);
+      const double tried_loss = loss_at(tried);
+      if (tried_loss >= loss) continue;
+      shares_ = tried;
+      loss = tried_loss;
+    }
+  }
+}
+
 void Fit::DescendByMotions(Calibration& result, const CalibrationStep& on_step) {
   const double likeness_weight = std::exchange(options_.likeness_weight, 0.0);
   Descend(result, on_step, Part::kMotions);
@@ -176,6 +204,10 @@ Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step)
   if (has_whole_runs_only_) DescendByMotions(result, on_step);
   Descend(result, on_step, Part::kDescent);
   step_ = options_.step;
+  if (result.has_converged && options_.runs == 0 && !has_whole_runs_only_) {
+    SearchAlong();
+    step_ = std::min(step_, kSearchSpans.back());  // there, slopes over longer steps say less
+  }
   for (int i = 0; i < options_.corrections; ++i) {
     Correct();
     Tell(on_step, Part::kCorrection, i + 1, options_.corrections);

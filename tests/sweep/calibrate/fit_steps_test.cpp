@@ -120,6 +120,14 @@ void CheckWays(const std::vector<double>& ways, const std::vector<double>& expec
   for (size_t i = 0; i < ways.size(); ++i) CHECK(ways[i] == Approx(expected[i]));
 }
 
+/// `expected` first; then those of the search along the parameter, whose last one slopes have.
+void CheckWaysOfSearch(const std::vector<double>& ways, const std::vector<double>& expected) {
+  REQUIRE(ways.size() > expected.size());
+  CheckWays({ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(expected.size())}, expected);
+  CHECK(ways[expected.size()] == Approx(0.1));  // from where it stands to the first it looks at
+  CHECK(ways.back() == Approx(0.04));
+}
+
 TEST_CASE("Slopes are read over the first step, then over half of the last, at the end over one") {
   CalibrationOptions options = Options();
   options.first_step = 0.4;
@@ -127,15 +135,15 @@ TEST_CASE("Slopes are read over the first step, then over half of the last, at t
   OneLaw simulator(Itself);
   const Fitted fitted = FitFrom(0.5, simulator, TwoLogs(0.52), options);
   CHECK(fitted.fit.has_converged);
-  CheckWays(simulator.Ways(), {0.8, 0.4, 0.3});
+  CheckWaysOfSearch(simulator.Ways(), {0.8, 0.4, 0.3});
 
   // A first step below the last is none.
   options.first_step = 0.05;
   OneLaw other(Itself);
   FitFrom(0.5, other, TwoLogs(0.52), options);
-  CheckWays(other.Ways(), {0.3});
+  CheckWaysOfSearch(other.Ways(), {0.3});
 
-  // Corrections are at the end, also of a descent that was cut short.
+  // Corrections are at the end, also of a descent that was cut short, which is not searched.
   options.first_step = 0.4;
   options.iterations = 1;
   options.corrections = 1;
