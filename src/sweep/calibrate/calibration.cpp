@@ -57,6 +57,9 @@ class Fit {
   void Tell(const CalibrationStep& on_step, Part part, int step, int most) const;
   bool Improve();
   void Correct();
+  double LossAt(const Eigen::VectorXd& shares) {
+    return SquaredSum(model_.ErrorsAt(shares, scale_)) + prior_.LossAt(shares);
+  }
   Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                           double damping) const;
   Eigen::VectorXd Moved(const Eigen::VectorXd& by) const {
@@ -109,8 +112,7 @@ bool Fit::Improve() {
   for (; damping_ < kLargestDamping; damping_ *= 10.0) {
     const Eigen::VectorXd tried = Moved(StepFor(hessian, gradient, damping_));
     if ((tried - shares_).cwiseAbs().maxCoeff() < kConverged) return false;
-    const double tried_loss = SquaredSum(model_.ErrorsAt(tried, scale_)) + prior_.LossAt(tried);
-    if (tried_loss >= loss) continue;
+    if (LossAt(tried) >= loss) continue;
     shares_ = tried;
     damping_ = std::max(1e-4, 0.1 * damping_);
     return true;
@@ -144,21 +146,18 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step, Part part
 /// Along one parameter after the other, over ever shorter spans, to where a parabola through three
 /// losses is least: what a log tells of a delay lies within the leaps that slopes have to see past.
 void Fit::SearchAlong() {
-  const auto loss_at = [&](const Eigen::VectorXd& shares) {
-    return SquaredSum(model_.ErrorsAt(shares, scale_)) + prior_.LossAt(shares);
-  };
-  double loss = loss_at(shares_);
+  double loss = LossAt(shares_);
   for (const double span : kSearchSpans) {
     for (Eigen::Index k = 0; k < shares_.size(); ++k) {
       const auto along = [&](double by) {
         return Moved(by * Eigen::VectorXd::Unit(shares_.size(), k));
       };
-      const double below = loss_at(along(-span)), above = loss_at(along(span));
+      const double below = LossAt(along(-span)), above = LossAt(along(span));
       const double curvature = below + above - 2.0 * loss;
       double by = below < above ? -span : span;
       if (curvature > 0.0) by = std::clamp(0.5 * span * (below - above) / curvature, -span, span);
       const Eigen::VectorXd tried = along(by);
-      const double tried_loss = loss_at(tried);
+      const double tried_loss = LossAt(tried);
       if (tried_loss >= loss) continue;
       shares_ = tried;
       loss = tried_loss;
@@ -217,11 +216,8 @@ Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step)
   }
   Judge(parameters_, options_, shares_, at_, simulated_, prior_, generator, result);
   const auto count = static_cast<double>(Count(at_.errors));
-  const auto loss_at = [&](const Eigen::VectorXd& shares) {
-    return (SquaredSum(model_.ErrorsAt(shares, scale_)) + prior_.LossAt(shares)) / count;
-  };
-  result.loss_after = loss_at(shares_);
-  result.loss_before = loss_at(start);
+  result.loss_after = LossAt(shares_) / count;
+  result.loss_before = LossAt(start) / count;
   result.trials_simulated = model_.TrialsSimulated() + trials_of_simulated_;
   return result;
 }

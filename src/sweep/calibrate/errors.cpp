@@ -43,13 +43,6 @@ double SpreadError(const LogPrediction& a, const LogPrediction& b, double logged
   return runs > 0 ? sum / static_cast<double>(runs) / scatter : kUntold;
 }
 
-double Huber(double error, double outlier) {
-  const double size = std::abs(error);
-  if (size <= outlier) return error;
-  // Its square is Huber's linear loss.
-  return std::copysign(std::sqrt(outlier * (2.0 * size - outlier)), error);
-}
-
 double SlopeOfHuber(double error, double outlier) {
   const double size = std::abs(error);
   return size <= outlier ? 1.0 : std::sqrt(outlier / (2.0 * size - outlier));
@@ -82,6 +75,12 @@ Eigen::VectorXd AllOf(const LogErrors& errors) {
 }
 
 }  // namespace
+
+double Huber(double error, double outlier) {
+  const double size = std::abs(error);
+  if (size <= outlier) return error;
+  return std::copysign(std::sqrt(outlier * (2.0 * size - outlier)), error);
+}
 
 Traits MeanTraits(const std::vector<Traits>& of_runs) {
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();

@@ -12,6 +12,10 @@ namespace rift::sweep {
 enum Trait { kLogWeave, kLogSpeed, kLoopDelay_s, kSteeringGain, kTraits };
 using Traits = std::optional<Eigen::Vector4d>;
 
+/// An error in standard deviations whose square is Huber's loss (1964): itself up to `outlier`,
+/// beyond it a loss that grows in proportion.
+double Huber(double error, double outlier);
+
 /// Over those that tell them; none when none does.
 Traits MeanTraits(const std::vector<Traits>& of_runs);
 

@@ -15,7 +15,7 @@ struct LogOfTask {
   const trajectory::Trajectory* log;         ///< outlives this
   std::vector<control::Waypoint> waypoints;  ///< none: the task has none
   double reach_radius_m = 0.0;
-  std::string group = "";                                       ///< logs of one are compared
+  std::string group;                                            ///< logs of one are compared
   double way_ratio = std::numeric_limits<double>::quiet_NaN();  ///< WayRatio; NaN: not known
 };
 

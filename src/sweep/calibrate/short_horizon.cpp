@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "errors.hpp"
 #include "rift/geometry/pose2.hpp"
 #include "rift/statistics/descriptive.hpp"
 #include "rift/statistics/random.hpp"
@@ -195,11 +196,6 @@ std::vector<double> FrameErrors(const std::vector<HorizonError>& errors,
   return sizes;
 }
 
-double Huber(double error_sd) {
-  return error_sd <= kOutlier_sd ? error_sd * error_sd
-                                 : kOutlier_sd * (2.0 * error_sd - kOutlier_sd);
-}
-
 /// How likely the log is with each phase, adding up to one: normal errors of the scatter about the
 /// best phase, outliers in proportion (Huber 1964).
 std::vector<double> LikelihoodOf(const std::vector<std::vector<HorizonError>>& of_phase) {
@@ -216,7 +212,7 @@ std::vector<double> LikelihoodOf(const std::vector<std::vector<HorizonError>>& o
     }
     scatter = std::max(scatter, least);
     for (size_t k = 0; k < sizes.size(); ++k) {
-      for (const double size : sizes[k]) cost[k] += Huber(size / scatter);
+      for (const double size : sizes[k]) cost[k] += std::pow(Huber(size / scatter, kOutlier_sd), 2);
     }
   }
   const double least_cost = *std::min_element(cost.begin(), cost.end());
