@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,6 +21,8 @@ constexpr double kConverged = 5e-3;  // of the range, for the largest change of 
 constexpr double kFirstDamping = 1e-2;
 constexpr double kLargestDamping = 1e6;
 constexpr std::array kSearchSpans{0.1, 0.05, 0.02};  // of the range
+constexpr int kMostHalvings = 5;
+constexpr double kTrusted = 2.0;  // a growth of the deviance by so many times what slopes say
 
 Eigen::VectorXd SharesOfStart(const std::vector<experiment::FreeParameter>& parameters) {
   Eigen::VectorXd shares(static_cast<Eigen::Index>(parameters.size()));
@@ -52,18 +55,23 @@ class Fit {
  private:
   using Part = CalibrationProgress::Part;
   void Descend(Calibration& result, const CalibrationStep& on_step, Part part);
-  void SearchAlong();
+  void Search();
   void DescendByMotions(Calibration& result, const CalibrationStep& on_step);
   void Tell(const CalibrationStep& on_step, Part part, int step, int most) const;
-  bool Improve();
+  bool Improve(double deviance);
   void Correct();
+  Eigen::VectorXd Trusted(Eigen::VectorXd step, const Eigen::MatrixXd& hessian,
+                          const Eigen::VectorXd& slope, double deviance);
+  double DevianceAt(const Eigen::VectorXd& shares) {
+    return model_.DevianceAt(shares) + prior_.LossAt(shares);
+  }
   double LossAt(const Eigen::VectorXd& shares) {
     return SquaredSum(model_.ErrorsAt(shares, scale_)) + prior_.LossAt(shares);
   }
   Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                           double damping) const;
-  Eigen::VectorXd Moved(const Eigen::VectorXd& by) const {
-    return domain_.Nearest((shares_ + by).cwiseMax(0.0).cwiseMin(1.0));
+  Eigen::VectorXd Within(const Eigen::VectorXd& shares) const {
+    return domain_.Nearest(shares.cwiseMax(0.0).cwiseMin(1.0));
   }
 
   const std::vector<experiment::FreeParameter>& parameters_;
@@ -105,14 +113,13 @@ void Fit::Tell(const CalibrationStep& on_step, Part part, int step, int most) co
 }
 
 /// One step of Levenberg and Marquardt, damped until it helps; false when none does.
-bool Fit::Improve() {
+bool Fit::Improve(double deviance) {
   const Eigen::MatrixXd hessian = Sum(at_.hessians) + prior_.Hessian();
   const Eigen::VectorXd gradient = Sum(at_.gradients) + prior_.GradientAt(shares_);
-  const double loss = SquaredSum(at_.errors) + prior_.LossAt(shares_);
   for (; damping_ < kLargestDamping; damping_ *= 10.0) {
-    const Eigen::VectorXd tried = Moved(StepFor(hessian, gradient, damping_));
+    const Eigen::VectorXd tried = Within(shares_ + StepFor(hessian, gradient, damping_));
     if ((tried - shares_).cwiseAbs().maxCoeff() < kConverged) return false;
-    if (LossAt(tried) >= loss) continue;
+    if (DevianceAt(tried) >= deviance) continue;
     shares_ = tried;
     damping_ = std::max(1e-4, 0.1 * damping_);
     return true;
@@ -130,7 +137,7 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step, Part part
     const std::vector<LogErrors> raw = model_.RawErrorsAt(shares_);
     scale_ = ScaleOf(raw, options_);
     at_ = model_.LinearisedAt(shares_, raw, scale_, step_);
-    const bool helped = Improve();
+    const bool helped = Improve(Deviance(raw, options_) + prior_.LossAt(shares_));
     result.steps += helped;
     if (helped) {
       Tell(on_step, part, result.steps - first_step, options_.iterations);
@@ -143,24 +150,28 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step, Part part
   }
 }
 
-/// Along one parameter after the other, over ever shorter spans, to where a parabola through three
-/// losses is least: what a log tells of a delay lies within the leaps that slopes have to see past.
-void Fit::SearchAlong() {
-  double loss = LossAt(shares_);
+/// Along one parameter after the other and along the axes of what the logs tell of them together,
+/// over ever shorter spans, to where a parabola through three deviances is least: what a log tells
+/// of a delay lies within the leaps that slopes have to see past.
+void Fit::Search() {
+  const Eigen::Index n = shares_.size();
+  Eigen::MatrixXd ways(n, 2 * n);
+  ways << Eigen::MatrixXd::Identity(n, n),
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Sum(at_.hessians) + prior_.Hessian())
+          .eigenvectors();
+  double least = DevianceAt(shares_);
   for (const double span : kSearchSpans) {
-    for (Eigen::Index k = 0; k < shares_.size(); ++k) {
-      const auto along = [&](double by) {
-        return Moved(by * Eigen::VectorXd::Unit(shares_.size(), k));
-      };
-      const double below = LossAt(along(-span)), above = LossAt(along(span));
-      const double curvature = below + above - 2.0 * loss;
+    for (const auto& way : ways.colwise()) {
+      const auto along = [&](double by) { return Within(shares_ + by * way); };
+      const double below = DevianceAt(along(-span)), above = DevianceAt(along(span));
+      const double curvature = below + above - 2.0 * least;
       double by = below < above ? -span : span;
       if (curvature > 0.0) by = std::clamp(0.5 * span * (below - above) / curvature, -span, span);
       const Eigen::VectorXd tried = along(by);
-      const double tried_loss = LossAt(tried);
-      if (tried_loss >= loss) continue;
+      const double deviance = DevianceAt(tried);
+      if (deviance >= least) continue;
       shares_ = tried;
-      loss = tried_loss;
+      least = deviance;
     }
   }
 }
@@ -177,7 +188,8 @@ void Fit::DescendByMotions(Calibration& result, const CalibrationStep& on_step) 
 /// the commands that are replayed. Logs of the simulator have the same bias, and there the truth is
 /// known (indirect inference, Gourieroux, Monfort and Renault 1993).
 void Fit::Correct() {
-  at_ = model_.LinearisedAt(shares_, model_.RawErrorsAt(shares_), scale_, step_);
+  const std::vector<LogErrors> raw = model_.RawErrorsAt(shares_);
+  at_ = model_.LinearisedAt(shares_, raw, scale_, step_);
   // Few logs repeat more: what the simulated ones scatter by goes into the estimate.
   const int logs = static_cast<int>(model_.LogCount());
   const int repeats = (options_.simulated_logs + logs - 1) / logs;
@@ -187,14 +199,27 @@ void Fit::Correct() {
     Append(made, model.LinearisedAt(shares_, model.RawErrorsAt(shares_), scale_, step_));
     trials_of_simulated_ += model.TrialsSimulated();
   }
-  Eigen::VectorXd gradient = Sum(at_.gradients) + prior_.GradientAt(shares_);
+  const Eigen::MatrixXd hessian = Sum(at_.hessians) + prior_.Hessian();
+  const Eigen::VectorXd slope = Sum(at_.gradients) + prior_.GradientAt(shares_);
+  Eigen::VectorXd gradient = slope;
   if (repeats > 0) {
     gradient -= Sum(made.gradients) / repeats;
     simulated_.push_back(std::move(made));
   }
-  const Eigen::VectorXd step =
-      StepFor(Sum(at_.hessians) + prior_.Hessian(), gradient, kFirstDamping);
-  shares_ = Moved(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step));
+  const Eigen::VectorXd step = StepFor(hessian, gradient, kFirstDamping);
+  shares_ = Trusted(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step), hessian,
+                    slope, Deviance(raw, options_) + prior_.LossAt(shares_));
+}
+
+/// As much of a step as errors follow their slopes for, which is none of it across a leap.
+Eigen::VectorXd Fit::Trusted(Eigen::VectorXd step, const Eigen::MatrixXd& hessian,
+                             const Eigen::VectorXd& slope, double deviance) {
+  for (int i = 0; i <= kMostHalvings; ++i, step *= 0.5) {
+    const Eigen::VectorXd tried = Within(shares_ + step), by = tried - shares_;
+    const double expected = std::max(0.0, 2.0 * slope.dot(by) + by.dot(hessian * by));
+    if (DevianceAt(tried) - deviance <= kTrusted * expected) return tried;
+  }
+  return shares_;
 }
 
 Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step) {
@@ -204,7 +229,7 @@ Calibration Fit::Run(std::mt19937_64& generator, const CalibrationStep& on_step)
   Descend(result, on_step, Part::kDescent);
   step_ = options_.step;
   if (result.has_converged && options_.runs == 0 && !has_whole_runs_only_) {
-    SearchAlong();
+    Search();
     step_ = std::min(step_, kSearchSpans.back());  // there, slopes over longer steps say less
   }
   for (int i = 0; i < options_.corrections; ++i) {

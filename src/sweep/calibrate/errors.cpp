@@ -68,6 +68,36 @@ Eigen::VectorXd WeightsOf(const LogErrors& errors, const CalibrationOptions& opt
   return weights;
 }
 
+/// Of all motions over so many frames.
+std::vector<double> SizesOf(const std::vector<LogErrors>& errors, int frames, int channel) {
+  std::vector<double> sizes;
+  for (const LogErrors& log : errors) {
+    for (size_t i = 0; i < log.frames.size(); ++i) {
+      if (log.frames[i] != frames) continue;
+      sizes.push_back(std::abs(log.motions[3 * static_cast<Eigen::Index>(i) + channel]));
+    }
+  }
+  return sizes;
+}
+
+/// Of a density exp(-Huber^2 / 2): where the mean of z^2, beyond outliers of outlier z, is one.
+double LikeliestScale(const std::vector<double>& sizes, double outlier) {
+  constexpr int kMostSteps = 100;
+  constexpr double kSettled = 1e-9;
+  double scale = statistics::RootMeanSquare(sizes);
+  for (int i = 0; i < kMostSteps && scale > 0.0; ++i) {
+    double sum = 0.0;
+    for (const double size : sizes) {
+      const double z = size / scale;
+      sum += std::min(z * z, outlier * z);
+    }
+    const double factor = std::sqrt(sum / static_cast<double>(sizes.size()));
+    scale *= factor;
+    if (std::abs(factor - 1.0) < kSettled) break;
+  }
+  return scale;
+}
+
 Eigen::VectorXd AllOf(const LogErrors& errors) {
   Eigen::VectorXd all(errors.motions.size() + errors.traits.size());
   all << errors.motions, errors.traits;
@@ -143,19 +173,23 @@ Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationO
   Eigen::MatrixXd scale = Eigen::MatrixXd::Ones(options.horizon.most_frames, 3);
   for (int frames = 1; frames <= options.horizon.most_frames; ++frames) {
     for (int channel = 0; channel < 3; ++channel) {
-      std::vector<double> sizes;
-      for (const LogErrors& log : errors) {
-        for (size_t i = 0; i < log.frames.size(); ++i) {
-          if (log.frames[i] != frames) continue;
-          sizes.push_back(std::abs(log.motions[3 * static_cast<Eigen::Index>(i) + channel]));
-        }
-      }
+      const std::vector<double> sizes = SizesOf(errors, frames, channel);
       if (sizes.empty()) continue;
-      scale(frames - 1, channel) = std::max(
-          1e-9, statistics::kSigmaOfMedianDeviation * statistics::Median(std::move(sizes)));
+      scale(frames - 1, channel) = std::max(1e-9, LikeliestScale(sizes, options.outlier_sd));
     }
   }
   return scale;
+}
+
+double Deviance(const std::vector<LogErrors>& errors, const CalibrationOptions& options) {
+  const Eigen::MatrixXd scale = ScaleOf(errors, options);
+  const Eigen::MatrixXd log_scale = scale.array().log();
+  double sum = 0.0, logarithms = 0.0;
+  for (const LogErrors& log : errors) {
+    sum += Weighted(log, scale, options).squaredNorm();
+    for (const int frames : log.frames) logarithms += log_scale.row(frames - 1).sum();
+  }
+  return sum + 2.0 * logarithms / static_cast<double>(options.horizon.most_frames);
 }
 
 Eigen::VectorXd Weighted(const LogErrors& errors, const Eigen::MatrixXd& scale,

@@ -45,12 +45,17 @@ std::vector<LogErrors> ErrorsAt(const std::vector<CalibrationLog>& logs, const L
                                 FittedSimulator& simulator, const std::vector<double>& values,
                                 const CalibrationOptions& options);
 
-/// Root mean square of each kind of motion error over all logs, (frames - 1) x 3; outliers cut.
+/// The scatter that makes each kind of motion error over all logs likeliest, (frames - 1) x 3:
+/// normal errors, outliers in proportion; 1 where there are none.
 Eigen::MatrixXd ScaleOf(const std::vector<LogErrors>& errors, const CalibrationOptions& options);
 
 /// All errors of a log over their scale and weight: the sum of squares is its share of the loss.
 Eigen::VectorXd Weighted(const LogErrors& errors, const Eigen::MatrixXd& scale,
                          const CalibrationOptions& options);
+
+/// -2 log of the likelihood of all errors at the scatter that makes them likeliest, but for a
+/// constant. A loss over a scatter that is taken where it stands can be lowered by errors that grow.
+double Deviance(const std::vector<LogErrors>& errors, const CalibrationOptions& options);
 
 /// The slope of Weighted at `errors`, where these change with `slope`.
 Eigen::VectorXd WeightedSlope(const LogErrors& errors, const LogErrors& slope,

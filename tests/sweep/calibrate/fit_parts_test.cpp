@@ -26,6 +26,7 @@ LogErrors Errors(const std::vector<int>& frames, const std::vector<double>& moti
 }
 
 TEST_CASE("The scale of an error is the scatter of its kind and channel over all logs") {
+  // No outliers here: the root mean square.
   CalibrationOptions options;
   options.horizon.most_frames = 3;
   const std::vector<LogErrors> errors{
@@ -34,13 +35,47 @@ TEST_CASE("The scale of an error is the scatter of its kind and channel over all
   const Eigen::MatrixXd scale = ScaleOf(errors, options);
   REQUIRE(scale.rows() == 3);
   REQUIRE(scale.cols() == 3);
-  CHECK(scale(0, 0) == Approx(1.4826 * 2.0));
-  CHECK(scale(0, 1) == Approx(1.4826 * 20.0));
-  CHECK(scale(0, 2) == Approx(1.4826 * 0.2));
-  CHECK(scale(1, 0) == Approx(1.4826 * 7.0));
-  CHECK(scale(1, 2) == Approx(1.4826 * 0.7));
+  CHECK(scale(0, 0) == Approx(std::sqrt(14.0 / 3.0)));
+  CHECK(scale(0, 1) == Approx(std::sqrt(1400.0 / 3.0)));
+  CHECK(scale(0, 2) == Approx(std::sqrt(0.14 / 3.0)));
+  CHECK(scale(1, 0) == Approx(7.0));
+  CHECK(scale(1, 2) == Approx(0.7));
   CHECK(scale(2, 0) == 1.0);  // none of three frames
   CHECK(ScaleOf({Errors({1}, {0.0, 0.0, 0.0})}, options)(0, 0) == 1e-9);
+}
+
+TEST_CASE("An outlier adds to the scale in proportion, and the deviance is least at that scale") {
+  CalibrationOptions options;
+  options.horizon.most_frames = 1;
+  options.outlier_sd = 3.0;
+  std::vector<LogErrors> errors(1);
+  std::vector<double> motions;
+  for (int i = 0; i < 9; ++i) motions.insert(motions.end(), {i % 2 == 0 ? 1.0 : -1.0, 0.0, 0.0});
+  motions.insert(motions.end(), {30.0, 0.0, 0.0});
+  errors[0] = Errors(std::vector<int>(10, 1), motions);
+  // (9 / s^2 + 3 * 30 / s) / 10 = 1
+  const double s = 0.5 * (9.0 + std::sqrt(81.0 + 3.6));
+  CHECK(ScaleOf(errors, options)(0, 0) == Approx(s));
+  const auto deviance = [&](double scale) {
+    const double squares = 9.0 / (scale * scale) + 3.0 * (2.0 * 30.0 / scale - 3.0);
+    return squares + 20.0 * std::log(scale);
+  };
+  const double floors = 40.0 * std::log(1e-9);  // of the two channels without errors
+  CHECK(Deviance(errors, options) == Approx(deviance(s) + floors));
+  for (const double other : {0.9 * s, 1.1 * s}) CHECK(deviance(other) > deviance(s) + 0.05);
+}
+
+TEST_CASE("Errors that grow never lower the deviance, whatever they do to their median") {
+  CalibrationOptions options;
+  options.horizon.most_frames = 1;
+  // Half of the errors go down to a tenth, the others up tenfold: their median says a better fit.
+  const std::vector<LogErrors> before{
+      Errors(std::vector<int>(5, 1), {1.0, 1.0, 1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, -1.0, -1.0,
+                                      -1.0, 1.0, 1.0, 1.0})};
+  const std::vector<LogErrors> after{
+      Errors(std::vector<int>(5, 1), {0.1, 0.1, 0.1, -0.1, -0.1, -0.1, 0.1, 0.1, 0.1, -10.0, -10.0,
+                                      -10.0, 10.0, 10.0, 10.0})};
+  CHECK(Deviance(after, options) > Deviance(before, options) + 10.0);
 }
 
 TEST_CASE(

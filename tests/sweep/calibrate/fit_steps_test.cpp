@@ -246,7 +246,7 @@ TEST_CASE("Whole runs go to their motions first, then to traits as well, with st
   const double by_motions = 0.5 / 1.01;
   CHECK(fitted.told[0].values[0] == Approx(by_motions).margin(1e-6));
   CheckWays(simulator.Ways(2), {0.3, 0.2});  // from 0 on above alone
-  const double motions = 8.0 / std::pow(1.4826 * 0.2, 2), traits = 9.0 * 2.0 / 0.0002;
+  const double motions = 8.0 / std::pow(0.2, 2), traits = 9.0 * 2.0 / 0.0002;
   const double target = (motions * 0.5 + traits * 0.8) / (motions + traits);
   CHECK(fitted.told[1].values[0] == Approx(by_motions + (target - by_motions) / 1.01).margin(1e-4));
 }
@@ -276,9 +276,7 @@ TEST_CASE("Losses are means over all errors, in standard deviations, and priors 
   const auto squares = [](double at) {
     return 4.0 * (std::pow(at - 0.52, 2) + std::pow(at - 0.48, 2));
   };
-  const auto scale = [](double at) {  // median of the sizes
-    return 1.4826 * 0.5 * (std::abs(at - 0.52) + std::abs(at - 0.48));
-  };
+  const auto scale = [&](double at) { return std::sqrt(squares(at) / 8.0); };
   REQUIRE_FALSE(fitted.told.empty());
   CHECK(fitted.told[0].loss == Approx(squares(0.3) / std::pow(scale(0.3), 2) / kErrors));
   const auto loss = [&](double at) {
@@ -294,9 +292,8 @@ TEST_CASE("A descent ends where logs and prior pull alike, from either of both")
     OneLaw simulator(Itself);
     const double value =
         FitFrom(start, simulator, TwoLogs(0.5, 0.2), Options(), a).fit.parameters[0].value;
-    // 8 x / s^2 = (0.4 - x) / sd^2 for x = value - 0.5, and s = 1.4826 x beyond the rows.
-    const double product = 8.0 * 0.05 * 0.05 / std::pow(1.4826, 2);
-    CHECK(value == Approx(0.5 + 0.2 + std::sqrt(0.04 - product)).margin(0.005));
+    // 8 x / s^2 = (0.4 - x) / sd^2 for x = value - 0.5, and s^2 = x^2 + 0.2^2: x = 0.3573.
+    CHECK(value == Approx(0.8573).margin(0.005));
   }
 }
 
@@ -323,7 +320,7 @@ TEST_CASE("A step that takes the value further from its prior than the logs ask 
   CalibrationOptions options = Options();
   options.first_step = options.step = 0.005;
   options.iterations = 1;
-  const double weight = 8.0 / std::pow(1.4826 * 0.12, 2);  // of eight rows, 0.12 off each
+  const double weight = 8.0 / std::pow(0.12, 2);  // of eight rows, 0.12 off each
   const experiment::FreeParameter a{.prior_mean = 0.3, .prior_sd = 1.0 / std::sqrt(0.01 * weight)};
   const Fitted fitted = FitFrom(0.3, flat_behind, TwoLogs(0.15, 0.0), options, a);
   REQUIRE(fitted.told.size() == 1);

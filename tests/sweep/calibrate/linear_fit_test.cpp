@@ -246,7 +246,7 @@ TEST_CASE("A prior weighs as its precision beside that of the errors") {
   Lines simulator(A, B);
   std::vector<CalibrationLog> logs{Log("1", 0.5, 11.2), Log("2", 0.5, 11.2)};
   const Calibration fit = FitOf({a, kB}, logs, simulator);
-  // Errors of channel 0 count over 1.4826 times their median size, about 0.01 + |a - 0.5| / 2 ...
+  // Errors of channel 0 count over their root mean square, about 0.01 + |a - 0.5| / 2 ...
   const double value = fit.parameters[0].value;
   CHECK(value > 0.5);
   CHECK(value < 0.9);
@@ -254,8 +254,8 @@ TEST_CASE("A prior weighs as its precision beside that of the errors") {
   // sd^2
   const double scale_squared = 8.0 * (value - 0.5) * a.prior_sd * a.prior_sd / (0.9 - value);
   const double scale = std::sqrt(scale_squared);
-  CHECK(scale >= 1.4826 * 0.0099);
-  CHECK(scale <= 1.4826 * 0.41);
+  CHECK(scale >= 0.0099);
+  CHECK(scale <= 0.41);
   CHECK(fit.parameters[1].value == Approx(11.2).margin(1e-6));
 }
 
@@ -363,7 +363,7 @@ TEST_CASE("Traits of runs pull with their weight over their scatter among the lo
     std::vector<CalibrationLog> logs{Log("1", 0.5, 11.2, 0.1, 0.54),
                                      Log("2", 0.5, 11.2, 0.1, 0.58)};
     const double value = FitOf({kA, kB}, logs, simulator, options).parameters[0].value;
-    const double motions = 8.0 / std::pow(1.4826 * 0.1, 2);
+    const double motions = 8.0 / (0.1 * 0.1 + std::pow(value - 0.5, 2));
     const double traits = weight * 2.0 / 0.0008;
     CHECK(value == Approx((motions * 0.5 + traits * 0.56) / (motions + traits)).margin(2e-4));
   }
