@@ -75,7 +75,7 @@ TEST_CASE("Whole drives tell a tracker's scatter and a pull, and nothing of what
              planted[3]};
   sweep::CalibrationOptions options;
   options.runs = 0;
-  options.iterations = 1;
+  options.iterations = 4;
   options.corrections = 0;
   options.horizon.phases = 2;
   options.features = {.rounds = 2, .draws = 200};

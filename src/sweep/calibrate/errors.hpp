@@ -54,7 +54,8 @@ Eigen::VectorXd Weighted(const LogErrors& errors, const Eigen::MatrixXd& scale,
                          const CalibrationOptions& options);
 
 /// -2 log of the likelihood of all errors at the scatter that makes them likeliest, but for a
-/// constant. A loss over a scatter that is taken where it stands can be lowered by errors that grow.
+/// constant. A loss over a scatter that is taken where it stands can be lowered by errors that
+/// grow.
 double Deviance(const std::vector<LogErrors>& errors, const CalibrationOptions& options);
 
 /// The slope of Weighted at `errors`, where these change with `slope`.

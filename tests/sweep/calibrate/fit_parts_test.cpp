@@ -70,11 +70,11 @@ TEST_CASE("Errors that grow never lower the deviance, whatever they do to their 
   options.horizon.most_frames = 1;
   // Half of the errors go down to a tenth, the others up tenfold: their median says a better fit.
   const std::vector<LogErrors> before{
-      Errors(std::vector<int>(5, 1), {1.0, 1.0, 1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, -1.0, -1.0,
-                                      -1.0, 1.0, 1.0, 1.0})};
-  const std::vector<LogErrors> after{
-      Errors(std::vector<int>(5, 1), {0.1, 0.1, 0.1, -0.1, -0.1, -0.1, 0.1, 0.1, 0.1, -10.0, -10.0,
-                                      -10.0, 10.0, 10.0, 10.0})};
+      Errors(std::vector<int>(5, 1),
+             {1.0, 1.0, 1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0})};
+  const std::vector<LogErrors> after{Errors(
+      std::vector<int>(5, 1),
+      {0.1, 0.1, 0.1, -0.1, -0.1, -0.1, 0.1, 0.1, 0.1, -10.0, -10.0, -10.0, 10.0, 10.0, 10.0})};
   CHECK(Deviance(after, options) > Deviance(before, options) + 10.0);
 }
 

@@ -320,6 +320,39 @@ TEST_CASE("What biases real and simulated logs alike is taken out by the correct
   CHECK(biased.repeats == std::vector<int>{0, 1});
 }
 
+/// Its simulated logs are beside what it predicts for them.
+class Off : public Lines {
+ public:
+  using Lines::Lines;
+  std::vector<Trajectory> LogsAt(const std::vector<CalibrationLog>& real,
+                                 const std::vector<double>& values, int repeat) override {
+    std::vector<Trajectory> made = Lines::LogsAt(real, values, repeat);
+    for (Trajectory& one : made) {
+      for (auto& pose : one.poses) pose.x_m += by;
+    }
+    return made;
+  }
+  double by = 0.0;
+};
+
+TEST_CASE("A correction goes as far as errors follow their slopes, not across a leap") {
+  CalibrationOptions options = LeastSquares();
+  options.corrections = 1;
+  options.simulated_logs = 4;
+  options.first_step = 0.2;
+  options.step = 0.005;
+  FreeParameter a = kA;
+  a.start = 0.5;
+  const std::vector<CalibrationLog> logs{Log("1", 0.5, 11.0, 0.2), Log("2", 0.5, 11.0, 0.2)};
+  for (const double leap : {0.0, 5.0}) {
+    Off off([leap](const std::vector<double>& v) { return v[0] + (v[0] > 0.57 ? leap : 0.0); }, B);
+    off.by = -0.1;
+    const double value = FitOf({a, kB}, logs, off, options).parameters[0].value;
+    if (leap == 0.0) CHECK(value == Approx(0.6).margin(0.003));
+    if (leap > 0.0) CHECK(value == Approx(0.55).margin(0.003));  // half of the step
+  }
+}
+
 TEST_CASE("A correction goes no further than the first step to either side") {
   for (const bool is_above : {false, true}) {
     Lines simulator(A, B);
@@ -330,19 +363,6 @@ TEST_CASE("A correction goes no further than the first step to either side") {
     const double target = is_above ? 2.0 : -0.5;
     std::vector<CalibrationLog> logs{Log("1", target, 11.0), Log("2", target, 11.0)};
     // Simulated logs are off by half the range: the correction would go as far.
-    class Off : public Lines {
-     public:
-      using Lines::Lines;
-      std::vector<Trajectory> LogsAt(const std::vector<CalibrationLog>& real,
-                                     const std::vector<double>& values, int repeat) override {
-        std::vector<Trajectory> made = Lines::LogsAt(real, values, repeat);
-        for (Trajectory& one : made) {
-          for (auto& pose : one.poses) pose.x_m += by;
-        }
-        return made;
-      }
-      double by = 0.0;
-    };
     Off off(A, B);
     off.by = is_above ? -1.0 : 1.0;
     const double before = FitOf({kA, kB}, logs, simulator, options).parameters[0].value;
