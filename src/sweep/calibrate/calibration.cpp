@@ -60,14 +60,18 @@ class Fit {
   void Tell(const CalibrationStep& on_step, Part part, int step, int most) const;
   bool Improve(double deviance);
   void Correct();
-  Eigen::VectorXd Trusted(Eigen::VectorXd step, const Eigen::MatrixXd& hessian,
-                          const Eigen::VectorXd& slope, double deviance);
+  Eigen::VectorXd Trusted(Eigen::VectorXd step, double deviance);
+  double DevianceOf(const std::vector<LogErrors>& raw, const Eigen::VectorXd& shares) const {
+    return Deviance(raw, options_) + prior_.LossAt(shares);
+  }
   double DevianceAt(const Eigen::VectorXd& shares) {
-    return model_.DevianceAt(shares) + prior_.LossAt(shares);
+    return DevianceOf(model_.RawErrorsAt(shares), shares);
   }
   double LossAt(const Eigen::VectorXd& shares) {
     return SquaredSum(model_.ErrorsAt(shares, scale_)) + prior_.LossAt(shares);
   }
+  Eigen::MatrixXd Hessian() const { return Sum(at_.hessians) + prior_.Hessian(); }
+  Eigen::VectorXd Gradient() const { return Sum(at_.gradients) + prior_.GradientAt(shares_); }
   Eigen::VectorXd StepFor(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                           double damping) const;
   Eigen::VectorXd Within(const Eigen::VectorXd& shares) const {
@@ -114,8 +118,8 @@ void Fit::Tell(const CalibrationStep& on_step, Part part, int step, int most) co
 
 /// One step of Levenberg and Marquardt, damped until it helps; false when none does.
 bool Fit::Improve(double deviance) {
-  const Eigen::MatrixXd hessian = Sum(at_.hessians) + prior_.Hessian();
-  const Eigen::VectorXd gradient = Sum(at_.gradients) + prior_.GradientAt(shares_);
+  const Eigen::MatrixXd hessian = Hessian();
+  const Eigen::VectorXd gradient = Gradient();
   for (; damping_ < kLargestDamping; damping_ *= 10.0) {
     const Eigen::VectorXd tried = Within(shares_ + StepFor(hessian, gradient, damping_));
     if ((tried - shares_).cwiseAbs().maxCoeff() < kConverged) return false;
@@ -137,7 +141,7 @@ void Fit::Descend(Calibration& result, const CalibrationStep& on_step, Part part
     const std::vector<LogErrors> raw = model_.RawErrorsAt(shares_);
     scale_ = ScaleOf(raw, options_);
     at_ = model_.LinearisedAt(shares_, raw, scale_, step_);
-    const bool helped = Improve(Deviance(raw, options_) + prior_.LossAt(shares_));
+    const bool helped = Improve(DevianceOf(raw, shares_));
     result.steps += helped;
     if (helped) {
       Tell(on_step, part, result.steps - first_step, options_.iterations);
@@ -157,8 +161,7 @@ void Fit::Search() {
   const Eigen::Index n = shares_.size();
   Eigen::MatrixXd ways(n, 2 * n);
   ways << Eigen::MatrixXd::Identity(n, n),
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Sum(at_.hessians) + prior_.Hessian())
-          .eigenvectors();
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Hessian()).eigenvectors();
   double least = DevianceAt(shares_);
   for (const double span : kSearchSpans) {
     for (const auto& way : ways.colwise()) {
@@ -199,21 +202,20 @@ void Fit::Correct() {
     Append(made, model.LinearisedAt(shares_, model.RawErrorsAt(shares_), scale_, step_));
     trials_of_simulated_ += model.TrialsSimulated();
   }
-  const Eigen::MatrixXd hessian = Sum(at_.hessians) + prior_.Hessian();
-  const Eigen::VectorXd slope = Sum(at_.gradients) + prior_.GradientAt(shares_);
-  Eigen::VectorXd gradient = slope;
+  Eigen::VectorXd gradient = Gradient();
   if (repeats > 0) {
     gradient -= Sum(made.gradients) / repeats;
     simulated_.push_back(std::move(made));
   }
-  const Eigen::VectorXd step = StepFor(hessian, gradient, kFirstDamping);
-  shares_ = Trusted(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step), hessian,
-                    slope, Deviance(raw, options_) + prior_.LossAt(shares_));
+  const Eigen::VectorXd step = StepFor(Hessian(), gradient, kFirstDamping);
+  shares_ = Trusted(step.cwiseMax(-options_.first_step).cwiseMin(options_.first_step),
+                    DevianceOf(raw, shares_));
 }
 
 /// As much of a step as errors follow their slopes for, which is none of it across a leap.
-Eigen::VectorXd Fit::Trusted(Eigen::VectorXd step, const Eigen::MatrixXd& hessian,
-                             const Eigen::VectorXd& slope, double deviance) {
+Eigen::VectorXd Fit::Trusted(Eigen::VectorXd step, double deviance) {
+  const Eigen::MatrixXd hessian = Hessian();
+  const Eigen::VectorXd slope = Gradient();
   for (int i = 0; i <= kMostHalvings; ++i, step *= 0.5) {
     const Eigen::VectorXd tried = Within(shares_ + step), by = tried - shares_;
     const double expected = std::max(0.0, 2.0 * slope.dot(by) + by.dot(hessian * by));

@@ -104,9 +104,6 @@ class ErrorModel {
 
   std::vector<LogErrors> RawErrorsAt(const Eigen::VectorXd& shares);
   Blocks ErrorsAt(const Eigen::VectorXd& shares, const Eigen::MatrixXd& scale);
-  double DevianceAt(const Eigen::VectorXd& shares) {
-    return Deviance(RawErrorsAt(shares), options_);
-  }
   /// Slopes over `step` to either side, to one alone where the other is not in the domain, of a
   /// run's traits over a wide one; `raw`: RawErrorsAt(shares).
   Linearised LinearisedAt(const Eigen::VectorXd& shares, const std::vector<LogErrors>& raw,

@@ -246,7 +246,7 @@ TEST_CASE("A prior weighs as its precision beside that of the errors") {
   Lines simulator(A, B);
   std::vector<CalibrationLog> logs{Log("1", 0.5, 11.2), Log("2", 0.5, 11.2)};
   const Calibration fit = FitOf({a, kB}, logs, simulator);
-  // Errors of channel 0 count over their root mean square, about 0.01 + |a - 0.5| / 2 ...
+  // Errors of channel 0 count over their root mean square, of rows 0.01 to either side ...
   const double value = fit.parameters[0].value;
   CHECK(value > 0.5);
   CHECK(value < 0.9);
@@ -256,6 +256,7 @@ TEST_CASE("A prior weighs as its precision beside that of the errors") {
   const double scale = std::sqrt(scale_squared);
   CHECK(scale >= 0.0099);
   CHECK(scale <= 0.41);
+  CHECK(scale == Approx(std::hypot(0.01, value - 0.5)).epsilon(0.02));
   CHECK(fit.parameters[1].value == Approx(11.2).margin(1e-6));
 }
 
