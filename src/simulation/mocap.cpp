@@ -22,7 +22,13 @@ enum Stream : std::uint64_t {
   kHostStream = 24
 };
 // Draws of a run and of a turn of the host; a normal value takes two.
-enum RunDraw : std::uint64_t { kRunNoise = 0, kRunPeriod = 2, kRunLateShare = 4, kRunMirrored = 5 };
+enum RunDraw : std::uint64_t {
+  kRunNoise = 0,
+  kRunPeriod = 2,
+  kRunLateShare = 4,
+  kRunStandingMirrored = 5,
+  kRunIsMirrored = 6
+};
 enum TurnDraw : std::uint64_t { kWander = 0, kTurnJitter = 2, kLate = 4 };
 // Draws of one frame; a normal value takes two.
 enum Draw : std::uint64_t {
@@ -87,6 +93,7 @@ MocapOptions OfThisRun(MocapOptions options, std::uint64_t seed) {
         std::max(kShortestPeriod_s, *options.host_period_s +
                                         options.host_period_spread_s * drawn.Normal(0, kRunPeriod));
   }
+  if (drawn.Uniform(0, kRunIsMirrored) >= options.ambiguity.runs) options.ambiguity.share = 0.0;
   return options;
 }
 
@@ -98,7 +105,8 @@ Mocap::Mocap(const MocapOptions& options, std::uint64_t seed)
       host_noise_(seed, kHostStream),
       standing_factor_(std::exp(options.noise_spread *
                                 statistics::CounterRandom(seed, kRunStream).Normal(0, kRunNoise))),
-      standing_mirrored_(statistics::CounterRandom(seed, kRunStream).Uniform(0, kRunMirrored)),
+      standing_mirrored_(
+          statistics::CounterRandom(seed, kRunStream).Uniform(0, kRunStandingMirrored)),
       phase_s_(options.rate_hz > 0.0
                    ? statistics::CounterRandom(seed, kPhaseStream).Uniform(0, 0) / options.rate_hz
                    : 0.0),

@@ -96,15 +96,18 @@ TEST_CASE("What a session on a surface has of its own stands beside what the rob
   surface.host_period_s = 0.06;
   surface.tracker_noise = 1.5;
   surface.mirrored_share = 0.4;
+  surface.mirrored_runs = 0.7;
   surface.session_mismatch = -0.01;
   CHECK(*options.MocapOfSession().host_period_s == 0.05);
   for (const auto scatter : kScatters) CHECK(options.MocapOfSession().*scatter == 0.002);
   CHECK(options.MocapOfSession().ambiguity.share == 0.5);
+  CHECK(options.MocapOfSession().ambiguity.runs == 1.0);
   CHECK(options.MotorOfSession().mismatch == 0.03);
   options.terrain.surface = "cardboard";
   CHECK(*options.MocapOfSession().host_period_s == 0.06);
   for (const auto scatter : kScatters) CHECK(options.MocapOfSession().*scatter == Approx(0.003));
   CHECK(options.MocapOfSession().ambiguity.share == Approx(0.2));
+  CHECK(options.MocapOfSession().ambiguity.runs == Approx(0.7));
   CHECK(options.MocapOfSession().stamp_jitter_s == options.mocap.stamp_jitter_s);
   CHECK(options.MotorOfSession().mismatch == Approx(0.02));
   options.mocap.host_period_s.reset();

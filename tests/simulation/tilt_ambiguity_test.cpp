@@ -96,11 +96,12 @@ TEST_CASE("A tag seen from the side and one near the camera are not mirrored") {
 }
 
 /// The shares of mirrored pictures of one run each, 100 pictures of a robot at that speed.
-std::vector<double> SharesOf(double speed_mps) {
+std::vector<double> SharesOf(double speed_mps, double runs = 1.0) {
   MocapOptions options = Quiet();
   options.rate_hz = 50.0;
   options.ambiguity = Logs();
   options.ambiguity.reach_m = 100.0;
+  options.ambiguity.runs = runs;
   std::vector<double> shares;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Mocap mocap(options, seed);
@@ -125,6 +126,16 @@ TEST_CASE("A moving tag is mirrored picture by picture, a standing one as often 
     CHECK(statistics::StandardDeviation(shares) ==
           Approx(speed_mps > 0.0 ? 0.049 : 0.3).epsilon(0.15));
   }
+}
+
+TEST_CASE("A run mirrors no picture, or as many as it would without such runs") {
+  const std::vector<double> always = SharesOf(0.05), shares = SharesOf(0.05, 0.7);
+  int mirroring = 0;
+  for (size_t i = 0; i < shares.size(); ++i) {
+    CHECK((shares[i] == 0.0 || shares[i] == always[i]));
+    mirroring += shares[i] > 0.0 ? 1 : 0;
+  }
+  CHECK(mirroring / 300.0 == Approx(0.7).margin(0.08));
 }
 
 TEST_CASE("Without ambiguity no pose is mirrored") {

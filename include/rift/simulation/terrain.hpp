@@ -35,6 +35,7 @@ struct SurfaceOptions {
   std::optional<double> host_period_s;
   double tracker_noise = 1.0;
   double mirrored_share = 1.0;
+  double mirrored_runs = 1.0;
   double session_mismatch = 0.0;
   double ramp_rad = 0.255;
   double ramp_top_m = 0.24;
@@ -77,7 +78,9 @@ struct SurfaceOptions {
     field(
         "mirrored_share", self.mirrored_share, 0.0, 1.0,
         "mocap.ambiguity.share in the session on this surface, as a share of that of mocap (logs: "
-        "0.22 of the pictures on ground, 0.45 to 0.51 on cardboard, parchment and bumps)");
+        "0.36 of the pictures on ground in its runs that have any, 0.44 to 0.46 elsewhere)");
+    field("mirrored_runs", self.mirrored_runs, 0.0, 1.0,
+          "mocap.ambiguity.runs in the session on this surface, as a share of that of mocap");
     field("session_mismatch", self.session_mismatch, -0.5, 0.5,
           "motor.mismatch in the session on this surface less motor.mismatch: another battery, "
           "cleaned wheels");

@@ -10,6 +10,7 @@ namespace rift::simulation {
 /// another tilt, and with it another yaw.
 struct AmbiguityOptions {
   double share = 0.0;
+  double runs = 1.0;
   double x_m = 0.0;
   double y_m = 0.0;
   double reach_m = 0.1;
@@ -26,6 +27,9 @@ struct AmbiguityOptions {
     field("share", self.share, 0.0, 0.9,
           "share of the pictures of a tag at x_m, y_m in which its tilt is mirrored at the line of "
           "sight; a robot that stands draws its own, of this mean (logs on flat ground: 0.52)");
+    field("runs", self.runs, 0.0, 1.0,
+          "share of the runs in which that happens at all (logs on ground: 8 of 12, of other flat "
+          "surfaces: all)");
     field(
         "x_m", self.x_m, -100.0, 100.0,
         "where in the camera's view that happens most often, in m (logs: -0.22, near their start)");
