@@ -30,7 +30,7 @@ using test::WaitForMotion;
 using test::WasInterrupted;
 using test::WasInterruptedOrLate;
 
-constexpr rlim_t kRoom = 12'000;  // more than the experiment, less than a drive
+constexpr rlim_t kRoom = 14'000;  // more than the experiment, less than a drive
 
 void CheckWholeDrive(Scene& scene, const test::ProcessResult& result) {
   INFO(result.out << result.err << scene.floor.Told());
