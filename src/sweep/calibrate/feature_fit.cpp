@@ -23,8 +23,8 @@ using Eigen::Index;
 constexpr std::uint64_t kDrawStream = 111;
 constexpr int kPair = 2;
 constexpr double kFarthest = 2.0;  // draws and estimates of a round, in scatters
-/// Scatter of the first draws and the least of later ones, as shares of the ranges.
-constexpr double kFirstScatter = 0.15, kLeastScatter = 0.02;
+/// Scatter of the first draws and the limits of later ones, as shares of the ranges.
+constexpr double kFirstScatter = 0.15, kLeastScatter = 0.02, kMostScatter = 0.3;
 /// Draws reach as far as the estimate is uncertain, twice: slopes over less are noise.
 constexpr double kReach = 2.0;
 /// 1 / sd^2 of an even spread over a range about its end.
@@ -329,8 +329,8 @@ void FitFeatures(const std::vector<CalibrationLog>& logs, const TwinAt& twin,
     const Eigen::VectorXd z = region.Within(domain, region.Least(model));
     shares = region.SharesAt(z);
     const Eigen::MatrixXd covariance = region.CovarianceAt(model, z);
-    scatter = (kReach * covariance.diagonal().cwiseSqrt()).cwiseMin(scatter);
-    scatter = scatter.cwiseMax(kLeastScatter);
+    scatter = (kReach * covariance.diagonal().cwiseSqrt()).cwiseMax(kLeastScatter);
+    scatter = scatter.cwiseMin(kMostScatter);
     found.has_converged = z.cwiseAbs().maxCoeff() < kFarthest;
     if (on_step) {
       on_step({.part = CalibrationProgress::Part::kFeatures,

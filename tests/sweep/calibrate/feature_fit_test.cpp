@@ -153,7 +153,7 @@ class Rounds {
       round.mean[k] = statistics::MeanOfNormalWithin(round.shares[k], round.sd[k], 0.0, 1.0);
     }
     shares_ = round.shares;
-    scatter_ = (2.0 * round.sd).cwiseMin(scatter_).cwiseMax(0.02);
+    scatter_ = (2.0 * round.sd).cwiseMax(0.02).cwiseMin(0.3);
     return round;
   }
 
@@ -284,6 +284,30 @@ TEST_CASE("A fit by features needs twice as many draws as it regresses numbers o
   CHECK(on_the_way.parameters[0].value == Approx(-0.1 + 0.2 * (0.5 - 2.0 * 0.15)).margin(1e-3));
   CHECK_FALSE(on_the_way.parameters[0].is_at_bound);
   CHECK_FALSE(on_the_way.has_converged);
+}
+
+TEST_CASE("What drives do not tell is drawn further out, as far as three tenths of its range") {
+  Calibration found = Before();
+  found.parameters = {found.parameters[1]};
+  found.parameters[0].value = 1.0;
+  found.parameters[0].has_effect = true;  // on motions
+  std::vector<double> asked;
+  const TwinAt twin = [&asked](size_t log, const std::vector<double>& values) {
+    asked.push_back(values[0]);
+    return Twin(log, {0.0, 0.0, 0.001});
+  };
+  constexpr size_t kDraws = 100, kLogs = 2;
+  FitFeatures(Logs(), twin, Options(2, kDraws), kSeed, 1, {}, found);
+  // After two drives and one look at each log.
+  const auto scatter_of = [&asked](size_t round) {
+    std::vector<double> shares;
+    for (size_t i = 0; i < kDraws; ++i) {
+      shares.push_back(0.5 * asked[3 * kLogs + (round * kDraws + i) * kLogs]);
+    }
+    return statistics::StandardDeviation(shares);
+  };
+  CHECK(scatter_of(0) == Approx(0.14).margin(0.02));  // both cut off: two scatters away,
+  CHECK(scatter_of(1) == Approx(0.27).margin(0.02));  // and at the ends of the range
 }
 
 TEST_CASE("A fit by features of what nothing depends on is what it was") {
