@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "rift/geometry/pose3.hpp"
+
 namespace rift::simulation {
 namespace {
 
@@ -32,6 +34,24 @@ Eigen::Isometry3d Mirrored(const AmbiguityOptions& options,
                       world_from_tag.linear() * Eigen::Vector3d(1.0, 1.0, -1.0).asDiagonal();
   mirrored.translation() += options.nearer * to_camera;
   return mirrored;
+}
+
+geometry::Pose2 LevelTag(const AmbiguityOptions& options, const geometry::Pose2& mirrored,
+                         double above_m) {
+  constexpr int kSteps = 3;  // what mirroring moves hardly changes over the way that it moves
+  geometry::Pose2 level = mirrored;
+  for (int i = 0; i < kSteps; ++i) {
+    Eigen::Isometry3d world_from_tag = Eigen::Isometry3d::Identity();
+    world_from_tag.translation() = Eigen::Vector3d(level.x_m, level.y_m, above_m);
+    world_from_tag.rotate(Eigen::AngleAxisd(level.yaw_rad, Eigen::Vector3d::UnitZ()));
+    if (MirroredShare(options, world_from_tag) <= 0.0) return mirrored;
+    const Eigen::Isometry3d seen = Mirrored(options, world_from_tag);
+    const double off_rad = mirrored.yaw_rad - geometry::RollPitchYaw(seen.linear())[2];
+    level = {level.x_m + mirrored.x_m - seen.translation().x(),
+             level.y_m + mirrored.y_m - seen.translation().y(),
+             geometry::WrapToPi(level.yaw_rad + off_rad)};
+  }
+  return level;
 }
 
 }  // namespace rift::simulation

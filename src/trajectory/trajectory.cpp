@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -60,6 +61,31 @@ size_t StandingRows(const std::vector<double>& turn_rad) {
   return turn_rad.size();
 }
 
+/// Between the tag's normal and the vertical; NaN where it is not logged.
+double Tilt_rad(const StampedPose& pose) {
+  return std::acos(std::cos(pose.roll_rad) * std::cos(pose.pitch_rad));
+}
+
+/// Of the first rows those of the lower tilt, where there are two; else all. The lower one is that
+/// of a robot that has hardly moved, as one that leaves is turned.
+std::vector<size_t> UprightRows(const Trajectory& trajectory, size_t rows, double radius_m) {
+  constexpr double kMirrored_rad = 0.2;  // the authors' logs: 0.5 more
+  const Eigen::Vector2d first = trajectory.poses.front().Position();
+  std::vector<size_t> all, still, upright;
+  double least_rad = std::numeric_limits<double>::infinity();
+  for (size_t row = 0; row < rows; ++row) {
+    const StampedPose& pose = trajectory.poses[row];
+    all.push_back(row);
+    if ((pose.Position() - first).norm() > kHardlyMoved * radius_m) continue;
+    still.push_back(row);
+    if (Tilt_rad(pose) < least_rad) least_rad = Tilt_rad(pose);
+  }
+  for (const size_t row : still) {
+    if (Tilt_rad(trajectory.poses[row]) <= least_rad + kMirrored_rad) upright.push_back(row);
+  }
+  return upright.empty() || upright.size() == still.size() ? all : upright;
+}
+
 }  // namespace
 
 geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m) {
@@ -67,18 +93,20 @@ geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m) {
     throw std::invalid_argument("the pose of the standing robot needs the yaw, which is not known");
   }
   const StampedPose& first = trajectory.poses.front();
-  std::vector<double> x_m, y_m, turn_rad;
+  std::vector<double> turn_rad;
   for (const StampedPose& pose : trajectory.poses) {
     if ((pose.Position() - first.Position()).norm() > radius_m) break;
-    x_m.push_back(pose.x_m);
-    y_m.push_back(pose.y_m);
     turn_rad.push_back(geometry::WrapToPi(pose.yaw_rad - first.yaw_rad));
   }
   // The tag over the axle stays where it is while the robot turns on the spot.
-  const size_t rows = StandingRows(turn_rad);
-  for (std::vector<double>* values : {&x_m, &y_m, &turn_rad}) values->resize(rows);
+  std::vector<double> x_m, y_m, upright_turn_rad;
+  for (const size_t row : UprightRows(trajectory, StandingRows(turn_rad), radius_m)) {
+    x_m.push_back(trajectory.poses[row].x_m);
+    y_m.push_back(trajectory.poses[row].y_m);
+    upright_turn_rad.push_back(turn_rad[row]);
+  }
   return {statistics::Median(x_m), statistics::Median(y_m),
-          geometry::WrapToPi(first.yaw_rad + statistics::Median(turn_rad))};
+          geometry::WrapToPi(first.yaw_rad + statistics::Median(upright_turn_rad))};
 }
 
 }  // namespace rift::trajectory

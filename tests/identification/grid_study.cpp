@@ -142,9 +142,7 @@ void Simulate(const GridStudy& study, int seeds, std::vector<GridPair>& pairs) {
     ++number;
     simulation::SimulationOptions options = study.simulation;
     options.terrain.surface = pair.files.surface;
-    const geometry::Pose2 tag_in_robot{options.mocap.tag_ahead_m, 0.0, 0.0};
-    const geometry::Pose2 start =
-        trajectory::StandingPose(pair.real) * geometry::Inverse(tag_in_robot);
+    const geometry::Pose2 start = sweep::StartFromLog(pair.real, 0.0, options.mocap);
     for (int seed = 1; seed <= seeds; ++seed) {
       simulation::SimulatedRobot robot(options, start, 1000 * number + seed);
       pair.runs.push_back(trial::RunTrial(robot, study.waypoints, pair.control, study.trial));

@@ -84,9 +84,7 @@ sweep::Calibration FindPlanted(const GridStudy& robot, const std::vector<Planted
   }
   const sweep::TwinAt twin = [&](size_t log, const std::vector<double>& values) {
     const GridStudy at = RobotAt(robot, planted, values);
-    const geometry::Pose2 tag{at.simulation.mocap.tag_ahead_m, 0.0, 0.0};
-    return TrialOf(at, v_min[log],
-                   trajectory::StandingPose(recorded[log].log) * geometry::Inverse(tag),
+    return TrialOf(at, v_min[log], sweep::StartFromLog(recorded[log].log, 0.0, at.simulation.mocap),
                    7 + 1000 * static_cast<std::uint64_t>(log));
   };
   std::mt19937_64 generator(1);

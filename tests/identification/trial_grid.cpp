@@ -45,13 +45,11 @@ std::vector<GridTrial> LoadTrialGrid(const GridStudy& study, int only) {
 sweep::SimulatedTrial TwinOf(const GridStudy& study, const GridTrial& trial, std::uint64_t seed) {
   simulation::SimulationOptions simulation = study.simulation;
   simulation.terrain.surface = trial.surface;
-  const geometry::Pose2 robot_from_tag =
-      geometry::Inverse(geometry::Pose2{simulation.mocap.tag_ahead_m, 0.0, 0.0});
   return {.task = study.waypoints,
           .control = trial.control,
           .trial = study.trial,
           .simulation = simulation,
-          .start = trajectory::StandingPose(trial.real) * robot_from_tag,
+          .start = sweep::StartFromLog(trial.real, 0.0, simulation.mocap),
           .seed = seed};
 }
 

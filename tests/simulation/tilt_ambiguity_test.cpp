@@ -67,6 +67,25 @@ TEST_CASE(
   CHECK(moved_m.x() == Approx(0.0016).margin(0.0013));
 }
 
+TEST_CASE("A level tag is found from its mirrored pose, where tags are mirrored") {
+  AmbiguityOptions options = Logs();
+  options.nearer = 0.005;
+  for (const double yaw_rad : {-0.1, 0.0, 0.05, 3.12}) {
+    CAPTURE(yaw_rad);
+    const Eigen::Isometry3d mirrored = Mirrored(options, Tag(-0.27, -0.075, 0.0, 0.0, yaw_rad));
+    const geometry::Pose2 seen{mirrored.translation().x(), mirrored.translation().y(),
+                               geometry::RollPitchYaw(mirrored.linear())[2]};
+    CHECK(std::abs(geometry::WrapToPi(seen.yaw_rad - yaw_rad)) > 0.04);
+    const geometry::Pose2 level = LevelTag(options, seen, 0.02);
+    CHECK(level.x_m == Approx(-0.27).margin(1e-4));
+    CHECK(level.y_m == Approx(-0.075).margin(1e-4));
+    CHECK(std::abs(geometry::WrapToPi(level.yaw_rad - yaw_rad)) < 0.005);
+    options.share = 0.0;
+    CHECK(LevelTag(options, seen, 0.02) == seen);
+    options.share = 0.4;
+  }
+}
+
 TEST_CASE("How often a tag is mirrored falls with the way from the worst place") {
   AmbiguityOptions options = Logs();
   options.angle_rad = 1.5;

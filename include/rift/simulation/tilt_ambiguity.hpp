@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "rift/geometry/pose2.hpp"
+
 namespace rift::simulation {
 
 /// A flat tag that is small in the picture looks nearly the same in two poses: its own, and one
@@ -62,5 +64,11 @@ double MirroredShare(const AmbiguityOptions& options, const Eigen::Isometry3d& w
 /// The other pose of which the picture, seen from far, is that of the tag.
 Eigen::Isometry3d Mirrored(const AmbiguityOptions& options,
                            const Eigen::Isometry3d& world_from_tag);
+
+/// Where a level tag lies that is seen at `mirrored`, a pose in the floor's plane, because it is
+/// taken for its mirrored pose: world_from_tag. As it was seen where no tag is mirrored. `above_m`:
+/// of the tag over the floor.
+geometry::Pose2 LevelTag(const AmbiguityOptions& options, const geometry::Pose2& mirrored,
+                         double above_m);
 
 }  // namespace rift::simulation

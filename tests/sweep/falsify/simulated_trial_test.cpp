@@ -94,5 +94,34 @@ TEST_CASE("A run begins where its tag is to be, wherever the draw of its seed ha
   }
 }
 
+TEST_CASE("A robot is found where it stood, however many pictures mirror its tag") {
+  SimulatedTrial trial{
+      .task = std::vector<control::Waypoint>{{.name = "s"}, {.name = "e", .x_m = 0.05}}};
+  simulation::MocapOptions& mocap = trial.simulation.mocap;
+  mocap.tag_ahead_m = -0.03;
+  mocap.ambiguity = {
+      .share = 0.8, .reach_m = 1.0, .camera_x_m = 0.25, .camera_y_m = 0.1, .nearer = 0.005};
+  trial.trial.timeout_s = 1.5;
+  int all = 0, some = 0;
+  for (trial.seed = 1; trial.seed <= 30; ++trial.seed) {
+    CAPTURE(trial.seed);
+    const trajectory::Trajectory log = Simulate(trial).result.trajectory;
+    const geometry::Pose2 start = StartFromLog(log, 0.0, mocap);
+    CHECK(std::abs(start.x_m) < 0.002);
+    CHECK(std::abs(start.y_m) < 0.002);
+    CHECK(std::abs(start.yaw_rad) < 0.012);  // mirrored pictures turn it by 0.06
+    int mirrored = 0, rows = 0;
+    for (const trajectory::StampedPose& pose : log.poses) {
+      if (std::hypot(pose.x_m - log.poses[0].x_m, pose.y_m - log.poses[0].y_m) > 0.01) break;
+      mirrored += std::abs(pose.pitch_rad) > 0.3 ? 1 : 0;
+      ++rows;
+    }
+    all += mirrored == rows;
+    some += mirrored > 0 && mirrored < rows;
+  }
+  CHECK(all > 5);
+  CHECK(some > 5);
+}
+
 }  // namespace
 }  // namespace rift::sweep

@@ -42,7 +42,8 @@ SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
 trajectory::Trajectory IdealPath(const control::Task& task);
 
 /// Where a robot stood whose tag was seen at the start of a log, `tag_offset_m` ahead of it:
-/// world_from_robot.
+/// world_from_robot. Where every row that stands is tilted as no ground is, and the simulated
+/// tracker takes tags there for their mirrored poses, what that does to a pose is taken back.
 geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offset_m,
                              const simulation::MocapOptions& mocap);
 
