@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -66,24 +66,43 @@ double Tilt_rad(const StampedPose& pose) {
   return std::acos(std::cos(pose.roll_rad) * std::cos(pose.pitch_rad));
 }
 
-/// Of the first rows those of the lower tilt, where there are two; else all. The lower one is that
-/// of a robot that has hardly moved, as one that leaves is turned.
+/// Turns from the first row of the rows at which the robot stands.
+std::vector<double> StandingTurns_rad(const Trajectory& trajectory, double radius_m) {
+  const StampedPose& first = trajectory.poses.front();
+  std::vector<double> turn_rad;
+  for (const StampedPose& pose : trajectory.poses) {
+    if ((pose.Position() - first.Position()).norm() > radius_m) break;
+    turn_rad.push_back(geometry::WrapToPi(pose.yaw_rad - first.yaw_rad));
+  }
+  // The tag over the axle stays where it is while the robot turns on the spot.
+  turn_rad.resize(StandingRows(turn_rad));
+  return turn_rad;
+}
+
+/// Of so many first rows those of the lower tilt, where two tilts take turns before the robot has
+/// moved from where the lower one shows it; else all. What follows all others may be a robot that
+/// leaves, and is turned.
 std::vector<size_t> UprightRows(const Trajectory& trajectory, size_t rows, double radius_m) {
-  constexpr double kMirrored_rad = 0.2;  // the authors' logs: 0.5 more
-  const Eigen::Vector2d first = trajectory.poses.front().Position();
-  std::vector<size_t> all, still, upright;
-  double least_rad = std::numeric_limits<double>::infinity();
+  constexpr double kMirrored_rad = 0.2;  // the authors' logs: 0.3 to 0.5 more
+  constexpr double kHardlyMoved = 0.3;   // of the radius
+  double least_rad = StampedPose::kNotLogged;
   for (size_t row = 0; row < rows; ++row) {
+    least_rad = std::fmin(least_rad, Tilt_rad(trajectory.poses[row]));
+  }
+  std::vector<size_t> all(rows), upright;
+  std::iota(all.begin(), all.end(), 0);
+  bool take_turns = false;
+  for (const size_t row : all) {
     const StampedPose& pose = trajectory.poses[row];
-    all.push_back(row);
-    if ((pose.Position() - first).norm() > kHardlyMoved * radius_m) continue;
-    still.push_back(row);
-    if (Tilt_rad(pose) < least_rad) least_rad = Tilt_rad(pose);
+    if (Tilt_rad(pose) > least_rad + kMirrored_rad) {
+      take_turns = take_turns || !upright.empty();
+    } else if (upright.empty() ||
+               (pose.Position() - trajectory.poses[upright.front()].Position()).norm() <=
+                   kHardlyMoved * radius_m) {
+      upright.push_back(row);
+    }
   }
-  for (const size_t row : still) {
-    if (Tilt_rad(trajectory.poses[row]) <= least_rad + kMirrored_rad) upright.push_back(row);
-  }
-  return upright.empty() || upright.size() == still.size() ? all : upright;
+  return take_turns ? upright : all;
 }
 
 }  // namespace
@@ -92,21 +111,25 @@ geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m) {
   if (!trajectory.HasYaw()) {
     throw std::invalid_argument("the pose of the standing robot needs the yaw, which is not known");
   }
-  const StampedPose& first = trajectory.poses.front();
-  std::vector<double> turn_rad;
-  for (const StampedPose& pose : trajectory.poses) {
-    if ((pose.Position() - first.Position()).norm() > radius_m) break;
-    turn_rad.push_back(geometry::WrapToPi(pose.yaw_rad - first.yaw_rad));
-  }
-  // The tag over the axle stays where it is while the robot turns on the spot.
+  const std::vector<double> turn_rad = StandingTurns_rad(trajectory, radius_m);
   std::vector<double> x_m, y_m, upright_turn_rad;
-  for (const size_t row : UprightRows(trajectory, StandingRows(turn_rad), radius_m)) {
+  for (const size_t row : UprightRows(trajectory, turn_rad.size(), radius_m)) {
     x_m.push_back(trajectory.poses[row].x_m);
     y_m.push_back(trajectory.poses[row].y_m);
     upright_turn_rad.push_back(turn_rad[row]);
   }
-  return {statistics::Median(x_m), statistics::Median(y_m),
-          geometry::WrapToPi(first.yaw_rad + statistics::Median(upright_turn_rad))};
+  return {
+      statistics::Median(x_m), statistics::Median(y_m),
+      geometry::WrapToPi(trajectory.poses.front().yaw_rad + statistics::Median(upright_turn_rad))};
+}
+
+double StandingTilt_rad(const Trajectory& trajectory, double radius_m) {
+  std::vector<double> tilts_rad;
+  const size_t rows = StandingTurns_rad(trajectory, radius_m).size();
+  for (const size_t row : UprightRows(trajectory, rows, radius_m)) {
+    tilts_rad.push_back(Tilt_rad(trajectory.poses[row]));
+  }
+  return statistics::Median(tilts_rad);
 }
 
 }  // namespace rift::trajectory

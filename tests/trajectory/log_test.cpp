@@ -418,19 +418,47 @@ TEST_CASE("A standing tag that is seen in two tilts lies in the lower one") {
                            .pitch_rad = is_mirrored ? higher_rad : lower_rad,
                            .yaw_rad = is_mirrored ? 0.05 : 0.1});
     }
-    return StandingPose(log);
+    return log;
   };
   for (const auto& [lower_rad, higher_rad] :
        {std::pair(-0.03, -0.55), {0.1, 0.5}, {-0.255, 0.5}, {0.0, 0.23}}) {
     CAPTURE(lower_rad, higher_rad);
-    const geometry::Pose2 pose = standing(lower_rad, higher_rad);
+    const Trajectory log = standing(lower_rad, higher_rad);
+    const geometry::Pose2 pose = StandingPose(log);
+    CHECK(StandingTilt_rad(log) == Approx(std::hypot(lower_rad, 0.02)).epsilon(0.01));
     CHECK(pose.x_m == 0.5);
     CHECK(pose.y_m == 0.2);
     CHECK(pose.yaw_rad == Approx(0.1));
   }
   // What jitters is one tilt, and so is one that is not logged: the median of all rows.
-  CHECK(standing(0.0, 0.18).yaw_rad == Approx(0.05));
-  CHECK(standing(StampedPose::kNotLogged, StampedPose::kNotLogged).yaw_rad == Approx(0.05));
+  CHECK(StandingPose(standing(0.0, 0.18)).yaw_rad == Approx(0.05));
+  const Trajectory without_tilt = standing(StampedPose::kNotLogged, StampedPose::kNotLogged);
+  CHECK(StandingPose(without_tilt).yaw_rad == Approx(0.05));
+  CHECK(std::isnan(StandingTilt_rad(without_tilt)));
+}
+
+TEST_CASE("What a leaving robot shows of its tag is not where it stood") {
+  // The authors' logs: a standing tag and its mirrored pose lie up to 5 mm apart, and the rows of a
+  // robot that leaves are within a centimetre of where it stood too.
+  const auto row = [](int i, double x_m, double pitch_rad, double yaw_rad) {
+    return StampedPose{.t_s = 0.1 * i,
+                       .x_m = x_m,
+                       .y_m = 0.0,
+                       .roll_rad = 0.0,
+                       .pitch_rad = pitch_rad,
+                       .yaw_rad = yaw_rad};
+  };
+  Trajectory log;
+  log.poses = {row(0, 0.0, 0.6, 0.0),    row(1, 0.0045, 0.1, 0.05), row(2, 0.0, 0.6, 0.0),
+               row(3, 0.0, 0.6, 0.0),    row(4, 0.0, 0.6, 0.0),     row(5, 0.0085, 0.1, 0.09),
+               row(6, 0.0095, 0.1, 0.09)};
+  CHECK(StandingPose(log).x_m == 0.0045);
+  CHECK(StandingPose(log).yaw_rad == Approx(0.05));
+  CHECK(StandingTilt_rad(log) == Approx(0.1));
+  // Upright only when it leaves: it stood mirrored.
+  log.poses[1] = row(1, 0.0, 0.6, 0.0);
+  CHECK(StandingPose(log).yaw_rad == Approx(0.0).margin(1e-12));
+  CHECK(StandingTilt_rad(log) == Approx(0.6));
 }
 
 TEST_CASE("A robot that turns on the spot under its tag does not stand any more") {

@@ -62,13 +62,15 @@ Trajectory OffsetAlongHeading(Trajectory trajectory, double offset_m);
 
 /// A robot that is seen further than this from where it stood, or turned by more, has left.
 inline constexpr double kStandingRadius_m = 0.01, kStandingTurn_rad = 0.1;
-/// Of such a radius; beyond it a robot may be leaving.
-inline constexpr double kHardlyMoved = 0.3;
 
 /// Where the robot stood before it drove: the median over the first rows within `radius_m` of the
 /// first one, since a tracker's first poses jump. A tracker that takes a flat tag for its mirrored
 /// pose (Schweighofer and Pinz 2006) sees it tilted further and turned: of two tilts the lower one
 /// counts. Throws std::invalid_argument without a yaw.
 geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m = kStandingRadius_m);
+
+/// Angle between the tag's normal and the vertical where the robot stood: the median over the rows
+/// of StandingPose; NaN where it is not logged. The log has a yaw.
+double StandingTilt_rad(const Trajectory& trajectory, double radius_m = kStandingRadius_m);
 
 }  // namespace rift::trajectory

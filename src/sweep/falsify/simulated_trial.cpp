@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "rift/simulation/terrain.hpp"
@@ -111,29 +110,11 @@ SimulatedTrial SimulatedTrialOf(const experiment::Experiment& experiment,
           .image = ImageOf(experiment.simulation.terrain, inputs)};
 }
 
-namespace {
-
-/// No ground that a robot starts on is steeper.
-constexpr double kMirroredTilt_rad = 0.35;
-
-/// Whether no row of a robot that has hardly moved sees its tag upright.
-bool StandsMirrored(const trajectory::Trajectory& log) {
-  constexpr double kStill_m = trajectory::kHardlyMoved * trajectory::kStandingRadius_m;
-  const trajectory::StampedPose& first = log.poses.front();
-  for (const trajectory::StampedPose& pose : log.poses) {
-    if ((pose.Position() - first.Position()).norm() > kStill_m) break;
-    const double upright = std::cos(pose.roll_rad) * std::cos(pose.pitch_rad);
-    if (!(upright < std::cos(kMirroredTilt_rad))) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
 geometry::Pose2 StartFromLog(const trajectory::Trajectory& log, double tag_offset_m,
                              const simulation::MocapOptions& mocap) {
+  constexpr double kMirroredTilt_rad = 0.35;  // no ground that a robot starts on is steeper
   geometry::Pose2 world_from_point = trajectory::StandingPose(log);
-  if (StandsMirrored(log)) {
+  if (trajectory::StandingTilt_rad(log) > kMirroredTilt_rad) {
     world_from_point = simulation::LevelTag(mocap.ambiguity, world_from_point, mocap.tag_above_m);
   }
   const geometry::Pose2 point_from_robot{-(tag_offset_m + mocap.tag_ahead_m), 0.0, 0.0};
