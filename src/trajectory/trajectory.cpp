@@ -94,13 +94,12 @@ std::vector<size_t> UprightRows(const Trajectory& trajectory, size_t rows, doubl
   bool take_turns = false;
   for (const size_t row : all) {
     const StampedPose& pose = trajectory.poses[row];
-    if (Tilt_rad(pose) > least_rad + kMirrored_rad) {
-      take_turns = take_turns || !upright.empty();
-    } else if (upright.empty() ||
-               (pose.Position() - trajectory.poses[upright.front()].Position()).norm() <=
-                   kHardlyMoved * radius_m) {
-      upright.push_back(row);
-    }
+    const double tilt_rad = Tilt_rad(pose);
+    if (tilt_rad > least_rad + kMirrored_rad) take_turns = take_turns || !upright.empty();
+    if (!(tilt_rad <= least_rad + kMirrored_rad)) continue;
+    const size_t first = upright.empty() ? row : upright.front();
+    const double moved_m = (pose.Position() - trajectory.poses[first].Position()).norm();
+    if (moved_m <= kHardlyMoved * radius_m) upright.push_back(row);
   }
   return take_turns ? upright : all;
 }
@@ -127,9 +126,10 @@ double StandingTilt_rad(const Trajectory& trajectory, double radius_m) {
   std::vector<double> tilts_rad;
   const size_t rows = StandingTurns_rad(trajectory, radius_m).size();
   for (const size_t row : UprightRows(trajectory, rows, radius_m)) {
-    tilts_rad.push_back(Tilt_rad(trajectory.poses[row]));
+    const double tilt_rad = Tilt_rad(trajectory.poses[row]);
+    if (!std::isnan(tilt_rad)) tilts_rad.push_back(tilt_rad);
   }
-  return statistics::Median(tilts_rad);
+  return tilts_rad.empty() ? StampedPose::kNotLogged : statistics::Median(tilts_rad);
 }
 
 }  // namespace rift::trajectory

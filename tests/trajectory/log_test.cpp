@@ -455,6 +455,10 @@ TEST_CASE("What a leaving robot shows of its tag is not where it stood") {
   CHECK(StandingPose(log).x_m == 0.0045);
   CHECK(StandingPose(log).yaw_rad == Approx(0.05));
   CHECK(StandingTilt_rad(log) == Approx(0.1));
+  // A row without a tilt is of neither kind.
+  log.poses[3].pitch_rad = StampedPose::kNotLogged;
+  CHECK(StandingPose(log).yaw_rad == Approx(0.05));
+  CHECK(StandingTilt_rad(log) == Approx(0.1));
   // Upright only when it leaves: it stood mirrored.
   log.poses[1] = row(1, 0.0, 0.6, 0.0);
   CHECK(StandingPose(log).yaw_rad == Approx(0.0).margin(1e-12));
