@@ -48,7 +48,7 @@ namespace {
 
 /// How many of the turns from the first row are those of a standing robot: up to the first two rows
 /// after one another that are turned away, since one alone is the tracker's.
-size_t StandingRows(const std::vector<double>& turn_rad) {
+size_t RowsBeforeTurn(const std::vector<double>& turn_rad) {
   constexpr size_t kFirst = 5;  // of which some may jump
   if (turn_rad.size() <= kFirst) return turn_rad.size();
   const double stands_rad = statistics::Median({turn_rad.begin(), turn_rad.begin() + kFirst});
@@ -66,17 +66,8 @@ double Tilt_rad(const StampedPose& pose) {
   return std::acos(std::cos(pose.roll_rad) * std::cos(pose.pitch_rad));
 }
 
-/// Turns from the first row of the rows at which the robot stands.
-std::vector<double> StandingTurns_rad(const Trajectory& trajectory, double radius_m) {
-  const StampedPose& first = trajectory.poses.front();
-  std::vector<double> turn_rad;
-  for (const StampedPose& pose : trajectory.poses) {
-    if ((pose.Position() - first.Position()).norm() > radius_m) break;
-    turn_rad.push_back(geometry::WrapToPi(pose.yaw_rad - first.yaw_rad));
-  }
-  // The tag over the axle stays where it is while the robot turns on the spot.
-  turn_rad.resize(StandingRows(turn_rad));
-  return turn_rad;
+double TurnFromFirst_rad(const Trajectory& trajectory, size_t row) {
+  return geometry::WrapToPi(trajectory.poses[row].yaw_rad - trajectory.poses.front().yaw_rad);
 }
 
 /// Of so many first rows those of the lower tilt, where two tilts take turns before the robot has
@@ -104,28 +95,37 @@ std::vector<size_t> UprightRows(const Trajectory& trajectory, size_t rows, doubl
   return take_turns ? upright : all;
 }
 
+/// The rows that show the robot where it stood before it left.
+std::vector<size_t> StandingRows(const Trajectory& trajectory, double radius_m) {
+  const Eigen::Vector2d first_m = trajectory.poses.front().Position();
+  std::vector<double> turn_rad;
+  for (size_t row = 0; row < trajectory.poses.size(); ++row) {
+    if ((trajectory.poses[row].Position() - first_m).norm() > radius_m) break;
+    turn_rad.push_back(TurnFromFirst_rad(trajectory, row));
+  }
+  // The tag over the axle stays where it is while the robot turns on the spot.
+  return UprightRows(trajectory, RowsBeforeTurn(turn_rad), radius_m);
+}
+
 }  // namespace
 
 geometry::Pose2 StandingPose(const Trajectory& trajectory, double radius_m) {
   if (!trajectory.HasYaw()) {
     throw std::invalid_argument("the pose of the standing robot needs the yaw, which is not known");
   }
-  const std::vector<double> turn_rad = StandingTurns_rad(trajectory, radius_m);
-  std::vector<double> x_m, y_m, upright_turn_rad;
-  for (const size_t row : UprightRows(trajectory, turn_rad.size(), radius_m)) {
+  std::vector<double> x_m, y_m, turn_rad;
+  for (const size_t row : StandingRows(trajectory, radius_m)) {
     x_m.push_back(trajectory.poses[row].x_m);
     y_m.push_back(trajectory.poses[row].y_m);
-    upright_turn_rad.push_back(turn_rad[row]);
+    turn_rad.push_back(TurnFromFirst_rad(trajectory, row));
   }
-  return {
-      statistics::Median(x_m), statistics::Median(y_m),
-      geometry::WrapToPi(trajectory.poses.front().yaw_rad + statistics::Median(upright_turn_rad))};
+  return {statistics::Median(x_m), statistics::Median(y_m),
+          geometry::WrapToPi(trajectory.poses.front().yaw_rad + statistics::Median(turn_rad))};
 }
 
 double StandingTilt_rad(const Trajectory& trajectory, double radius_m) {
   std::vector<double> tilts_rad;
-  const size_t rows = StandingTurns_rad(trajectory, radius_m).size();
-  for (const size_t row : UprightRows(trajectory, rows, radius_m)) {
+  for (const size_t row : StandingRows(trajectory, radius_m)) {
     const double tilt_rad = Tilt_rad(trajectory.poses[row]);
     if (!std::isnan(tilt_rad)) tilts_rad.push_back(tilt_rad);
   }
