@@ -9,7 +9,7 @@ namespace {
 
 using trajectory::Format;
 
-constexpr double kTagOffset_m = 0.03;  // tag centre to the robot's front, as published
+constexpr double kTagOffset_m = 0.03;  // from the tag's centre to the axle, as published
 
 double GapOf(const test::TrialPair& pair, double skip_start) {
   const trajectory::Trajectory sim = test::LoadTrajectory(pair.webots, Format::kWebots);

@@ -119,9 +119,9 @@ struct ReferenceOptions {
           "of logs in no dialect: which column holds what, such as "
           "t=time,x=pose_x,y=pose_y,yaw=theta:deg (docs/logs.md)");
     field("units", self.units, "of logs in no dialect, where they are not m, s and rad: mm,ms,deg");
-    field(
-        "tag_offset_m", self.tag_offset_m, -1.0, 1.0,
-        "moves the logs forward along their yaw, from the tag to the robot's front (paper: 0.03)");
+    field("tag_offset_m", self.tag_offset_m, -1.0, 1.0,
+          "moves the logs forward along their yaw, from the tag to the point that the simulator "
+          "logs, its axle (paper: 0.03)");
     field("grid_fps", self.grid_fps, 0.0, 1000.0,
           "puts time stamps back on the frames of a camera of this rate, where the log shows them "
           "(the authors' logs: 30); 0: as logged");

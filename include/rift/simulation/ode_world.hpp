@@ -25,9 +25,9 @@ struct WorldState {
 
 /// Chassis, two wheels on hinges and a fixed caster in ODE, on a terrain. Contacts are made by
 /// hand: one for each wheel, one for the caster, one for the rim. Nothing here ends the process:
-/// an error that ODE reports, a number that is not finite, and a robot that tipped over or fell
-/// becomes a fault, and a faulty world stands still. Worlds share nothing; each may live in a
-/// thread of its own.
+/// an error that ODE reports or a number that is not finite becomes a fault, a robot that tipped
+/// over or fell off a fall, and after either the world stands still. Worlds share nothing; each may
+/// live in a thread of its own.
 class OdeWorld {
  public:
   /// At rest on the terrain. Throws std::runtime_error when ODE refuses the bodies.

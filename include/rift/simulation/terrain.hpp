@@ -92,10 +92,10 @@ struct SurfaceOptions {
           "x at which plateau and slope meet at y = 0, in m (z of the logs, axle: downhill 0.05, "
           "uphill "
           "0.31)");
-    field(
-        "ramp_bend_m", self.ramp_bend_m, 0.0, 1.0,
-        "length in x over which plateau turns into slope, evenly, the edge in its middle, in m; 0: "
-        "a sharp edge (downhill, z beside that on flat ground: 0.22)");
+    field("ramp_bend_m", self.ramp_bend_m, 0.0, 1.0,
+          "length across the edge over which plateau turns into slope, evenly, the edge in its "
+          "middle, in m; 0: "
+          "a sharp edge (downhill, z beside that on flat ground: 0.22)");
     field("ramp_plateau_rad", self.ramp_plateau_rad, 0.0, 0.5,
           "inclination of the plateau in rad: it rises towards the slope (z and pitch in the "
           "downhill logs: 0.03 to 0.15)");
@@ -222,7 +222,7 @@ class Terrain {
   /// The blocks that reach into a square of half this size about the point; none for a ground
   /// without blocks, where a table ends there, and where more than 8 of them stand in a row.
   std::optional<std::vector<Block>> BlocksNear(double x_m, double y_m, double reach_m) const;
-  /// Whether height changes in steps (bumps, edge of a table), so that it has no useful slope
+  /// Whether height changes in steps all over the ground (bumps), so that it has no useful slope
   /// there.
   bool IsStepped() const { return surface_.shape == Shape::kBumps; }
 

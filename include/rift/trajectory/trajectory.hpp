@@ -11,7 +11,7 @@
 
 namespace rift::trajectory {
 
-/// One logged pose. World frame: y up, z up, metres; angles in radians, counter-clockwise.
+/// One logged pose. World frame: y up (logs of the authors' tracker: down), z up, metres; radians.
 /// A value that the log does not hold is NaN; t_s, x_m and y_m are always finite.
 struct StampedPose {
   static constexpr double kNotLogged = std::numeric_limits<double>::quiet_NaN();
@@ -56,7 +56,7 @@ struct Trajectory {
 double ArcLength_m(std::span<const StampedPose> poses);
 
 /// The same trajectory seen from a point `offset_m` further forward on the body: the authors log
-/// the centre of the tag, and their published gaps use the robot's front, 0.03 m ahead of it.
+/// the centre of the tag, their Webots the axle, which the published gaps take 0.03 m ahead of it.
 /// Throws std::invalid_argument when the offset is not zero and the yaw is not known.
 Trajectory OffsetAlongHeading(Trajectory trajectory, double offset_m);
 

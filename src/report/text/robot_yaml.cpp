@@ -73,9 +73,9 @@ std::string Head(const experiment::Experiment& experiment, const sweep::Calibrat
   for (const sweep::CalibrationTrial& trial : report.trials) held += trial.is_held_out;
   std::string text = fmt::format(
       "# Written by rift sweep {} --write-robot (rift {}), goal: calibrate.\n"
-      "# How: short-horizon prediction (1 to {} frames) and weave, spread, speed and loop delay "
-      "of\n"
-      "# whole runs (Levenberg-Marquardt, {} steps{}); {}.\n"
+      "# How: short-horizon prediction (1 to {} frames) and weave, spread, speed, loop "
+      "delay and\n"
+      "# steering gain of whole runs (Levenberg-Marquardt, {} steps{}); {}.\n"
       "# {} logs fitted, {} held out; loss {:.4f} before, {:.4f} after.\n",
       std::filesystem::path(experiment_file).filename().string(), RIFT_VERSION,
       experiment.calibrate.method.horizon.most_frames, fit.steps,

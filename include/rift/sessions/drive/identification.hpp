@@ -8,8 +8,8 @@ namespace rift::sessions {
 constexpr int kIdentificationRuns = 5;
 
 /// The experiment with a program in place of its waypoints that tells what waypoint drives cannot:
-/// steps of power and coasting forwards and backwards, spins and arcs to both sides, in half a
-/// minute within 0.5 m of the first waypoint (of the origin without one).
+/// steps of power and coasting forwards and backwards, spins and arcs to both sides, which takes a
+/// 3pi+ half a minute, within 0.5 m of the first waypoint (of the origin without one).
 experiment::Experiment IdentificationDrive(experiment::Experiment experiment);
 
 /// `logs`, a sweep over the logs of such drives, as a fit of the simulated robot to them. What the

@@ -32,8 +32,8 @@ struct SeriesRequest {
           "report on them against the simulator; the same command goes on after a break");
     field("identify", self.identify,
           "drive a program that tells what waypoint drives cannot, instead of the waypoints, and "
-          "write DIR/sweep.yaml, which fits the simulated robot to it; half a minute on 1 m by 1 "
-          "m, as often as --repeat says [5]");
+          "write DIR/sweep.yaml, which fits the simulated robot to it; half a minute of a "
+          "3pi+ on 1 m by 1 m, as often as --repeat says [5]");
     field("suggested", self.suggested, "DIR",
           "drive the experiments that rift sweep --suggest wrote into its folder, into "
           "DIR/suggested; the same sweep takes their logs in");
@@ -64,7 +64,8 @@ struct SeriesPlan {
   std::vector<experiment::Parameter> parameters;
   /// What holds the simulator against the logs: `rift sweep` runs it.
   experiment::Experiment sweep;
-  std::string next;  ///< what a person does with the drives; empty: they are swept at once
+  bool sweeps_drives = true;  ///< the sweep was made for these drives; else they are for it
+  std::string next;           ///< what a person does with the drives; empty: they are swept at once
 };
 
 /// Every setting of the experiment's grid (the paper's without a space), reference.trials times

@@ -63,8 +63,8 @@ struct GapJob {
     gap::GapOptions::Fields(self.options, field);
     gap::VerdictOptions::Fields(self.verdict, field);
     field("tag_offset_m", self.tag_offset_m, -1.0, 1.0,
-          "moves the real path forward along its yaw, from the tag to the robot's front (paper: "
-          "0.03)");
+          "moves the real path forward along its yaw, from the tag to the point that the simulator "
+          "logs, its axle (paper: 0.03)");
     LogSides::Fields(self.sides, field);
     field("sim_repeats", self.sim_repeats, "SIM...",
           "further runs of the simulator: adds how like the robot they are");

@@ -89,16 +89,17 @@ struct Calibration {
 std::vector<StartAgreement> AgreementOf(const std::vector<Calibration>& fits);
 
 /// Fits the parameters to the logs. What is made small: errors of short-horizon predictions over
-/// their standard deviation, and how the runs of each log differ from it in weave, spread, speed
-/// and loop delay over the scatter of these among the logs. Whole paths have no say: of a delayed
-/// bang-bang loop they are chaotic. A prior adds the square of the distance from its mean over its
-/// standard deviation, as one more error. Intervals and correlations: bootstrap over logs, each
-/// draw fitted by one Gauss-Newton step; over the logs alone and over logs and the simulated ones
-/// of the corrections together, whichever is wider. With options.features.rounds the estimate then
-/// goes on to where whole drives have the features of the logs. Throws std::invalid_argument for no
-/// logs, no parameters or a start out of range. `threads` evaluate logs at once and change no
-/// result. The fit asks for no twin at values that are not allowed: its steps and draws end before
-/// them, as at a bound, and it starts where they are next to the start.
+/// their standard deviation, and how the runs of each log differ from it in weave, spread,
+/// speed, loop delay and steering gain over the scatter of these among the logs. Whole paths have
+/// no say: of a delayed bang-bang loop they are chaotic. A prior adds the square of the distance
+/// from its mean over its standard deviation, as one more error. Intervals and correlations:
+/// bootstrap over logs, each draw fitted by one Gauss-Newton step; over the logs alone and over
+/// logs and the simulated ones of the corrections together, whichever is wider. With
+/// options.features.rounds the estimate then goes on to where whole drives have the features of the
+/// logs. Throws std::invalid_argument for no logs, no parameters or a start out of range. `threads`
+/// evaluate logs at once and change no result. The fit asks for no twin at values that are not
+/// allowed: its steps and draws end before them, as at a bound, and it starts where they are next
+/// to the start.
 Calibration Calibrate(const std::vector<experiment::FreeParameter>& parameters,
                       const std::vector<CalibrationLog>& logs, const TwinAt& twin,
                       const CalibrationOptions& options, std::mt19937_64& generator,

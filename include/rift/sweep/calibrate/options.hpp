@@ -67,11 +67,11 @@ struct CalibrationOptions {
     field("horizon", self.horizon, "prediction of the next frames from the logged ones");
     field("features", self.features, "fit by what tells simulated logs from real ones");
     field("runs", self.runs, 0, 1000,
-          "whole simulated runs of each log, for weave, spread, speed and loop delay; 0: the next "
-          "frames alone decide");
-    field(
-        "likeness_weight", self.likeness_weight, 0.0, 1e6,
-        "how much weave, spread, speed and loop delay of a run count beside one predicted motion");
+          "whole simulated runs of each log, for weave, spread, speed, loop delay and steering "
+          "gain; 0: the next frames alone decide");
+    field("likeness_weight", self.likeness_weight, 0.0, 1e6,
+          "how much weave, spread, speed, loop delay and steering gain of a run count beside one "
+          "predicted motion");
     field("iterations", self.iterations, 1, 1000, "most steps of the fit (Levenberg-Marquardt)");
     field("first_step", self.first_step, 1e-6, 0.5,
           "change of a parameter that its effect is read from at first, as a share of its range: "
