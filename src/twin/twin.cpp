@@ -24,7 +24,6 @@
 namespace rift::twin {
 namespace {
 
-constexpr int kReceiveBuffer = 512;  // RECEIVE_BUFFER of src/firmware/main.py
 constexpr double kPoll_s = 0.001;
 
 // The overhead camera.
@@ -55,19 +54,31 @@ void WarmUp(vision::SyntheticCamera& camera, const TwinSetup& setup) {
 
 }  // namespace
 
+simulation::SimulationOptions WithRiftHost(simulation::SimulationOptions simulation,
+                                           const TwinOptions& options) {
+  simulation::MocapOptions& mocap = simulation.mocap;
+  // What is told of a host with a period is the way to its driver alone.
+  if (mocap.host_period_s) mocap.processing_s += options.host_share_s;
+  mocap.host_period_s.reset();
+  for (auto& [name, surface] : simulation.terrain.surfaces) surface.host_period_s.reset();
+  mocap.ambiguity.share = 0.0;
+  simulation.link.late_share = 0.0;
+  return simulation;
+}
+
+simulation::LinkOptions WithFirmware(simulation::LinkOptions link) {
+  link.poll_s = 0.0;
+  link.uart_bytes = hardware::Listener::kReceiveBuffer;
+  link.watchdog_s = 1e-3 * hardware::Listener::kWatchdog_ms;
+  return link;
+}
+
 simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
                                      const TwinOptions& options) {
-  simulation.link.poll_s = 0.0;
-  simulation.link.uart_bytes = kReceiveBuffer;
-  simulation.link.watchdog_s = 1e-3 * hardware::Listener::kWatchdog_ms;
-  simulation.link.late_share = 0.0;  // its line stands from the start
+  simulation = WithRiftHost(std::move(simulation), options);
+  simulation.link = WithFirmware(simulation.link);
   simulation.mocap.rate_hz = options.fps;
   simulation.mocap.frame_jitter_s = 0.0;
-  if (simulation.mocap.host_period_s) {
-    // The host is a real one; what is told of a simulated one is the way to its driver alone.
-    simulation.mocap.processing_s += options.host_share_s;
-    simulation.mocap.host_period_s.reset();
-  }
   // A log may be of the robot's point on the floor; a picture shows the tag where it is.
   if (simulation.mocap.tag_above_m == 0.0) {
     simulation.mocap.tag_above_m = options.camera.body_height_m - simulation.body.wheel_radius_m;

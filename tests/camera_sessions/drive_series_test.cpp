@@ -37,6 +37,7 @@ TEST_CASE("A grid is driven floor by floor and every trial has a folder of its o
   const SeriesPlan plan = PlanGrid(TwoFloors(), "/out");
   REQUIRE(plan.trials.size() == 8);
   CHECK(plan.has_floors);
+  CHECK(plan.sweeps_drives);
   int changes = 0;
   std::set<std::string> folders;
   for (std::size_t i = 0; i < plan.trials.size(); ++i) {
@@ -244,6 +245,57 @@ TEST_CASE("The drives of one experiment are not mixed with those of another") {
                                  " and is 0.45 now; choose another --out");
 }
 
+TEST_CASE("A sweep of drives simulates the listener that answered all of them, else the told one") {
+  const auto poll_after = [](const std::vector<std::string>& summaries) {
+    const test::TemporaryFolder folder;
+    const int drives = static_cast<int>(summaries.size());
+    for (int i = 0; i < drives; ++i) {
+      const std::string drive = folder / std::to_string(i + 1);
+      fs::create_directories(drive);
+      if (!summaries[i].empty()) test::WriteText(drive + "/summary.json", summaries[i]);
+    }
+    Answering person{'q'};
+    CHECK(DriveAll({folder.Path(), PlanRepeats(TwoFloors(), drives, folder.Path())},
+                   person.AtConsole(), [] {}) == SeriesEnd::kDone);
+    const simulation::LinkOptions link =
+        experiment::LoadExperiment(folder / "sweep.yaml", {}, files::ReadFile).simulation.link;
+    const bool is_said = person.told.back().find("src/firmware") != std::string::npos;
+    CHECK(is_said == (link.poll_s == 0.0));
+    CHECK(link.uart_bytes == (link.poll_s == 0.0 ? 512 : 32));
+    CHECK(link.watchdog_s == (link.poll_s == 0.0 ? 0.3 : 0.0));
+    return link.poll_s;
+  };
+  const std::string framed = R"({"ping": {"protocol": "framed"}})";
+  const std::string plain = R"({"ping": {"protocol": "plain"}})";
+  CHECK(poll_after({framed}) == 0.0);
+  CHECK(poll_after({framed, framed}) == 0.0);
+  CHECK(poll_after({framed, ""}) == 0.0);
+  CHECK(poll_after({plain}) == 0.1);
+  CHECK(poll_after({framed, plain}) == 0.1);
+  for (const char* says_nothing :
+       {"", "{", "[]", "{}", R"({"ping": 1})", R"({"ping": {}})", R"({"ping": {"protocol": 1}})"}) {
+    CHECK(poll_after({says_nothing}) == 0.1);
+  }
+}
+
+TEST_CASE("A sweep of drives has rift's own host whatever host the robot's file tells of") {
+  experiment::Experiment robot = TwoFloors();
+  robot.simulation.mocap.host_period_s = 0.05;
+  robot.simulation.mocap.processing_s = 0.01;
+  robot.simulation.mocap.ambiguity.share = 0.5;
+  robot.simulation.terrain.surfaces["ground"].host_period_s = 0.06;
+  robot.simulation.link.late_share = 0.25;
+  const auto& of_drives = PlanRepeats(robot, 1, "/out").sweep.simulation;
+  CHECK_FALSE(of_drives.mocap.host_period_s);
+  CHECK(of_drives.mocap.processing_s == 0.01 + robot.twin.host_share_s);
+  CHECK(of_drives.mocap.ambiguity.share == 0.0);
+  CHECK_FALSE(of_drives.terrain.surfaces.at("ground").host_period_s);
+  CHECK(of_drives.link.late_share == 0.0);
+  CHECK(of_drives.link.poll_s == robot.simulation.link.poll_s);
+  robot.simulation.mocap.host_period_s.reset();
+  CHECK(PlanRepeats(robot, 1, "/out").sweep.simulation.mocap.processing_s == 0.01);
+}
+
 TEST_CASE("Drives of another program, or of other wheels that a program is made for, are others") {
   const test::TemporaryFolder folder;
   fs::create_directories(folder.Path() / "1");
@@ -300,6 +352,7 @@ TEST_CASE("A chosen setting is driven as often as it has folders, named by who c
                                                    {experiment::NumberValue(0.4)},
                                                    {"/out/3_1", "/out/3_2"}}});
   REQUIRE(plan.trials.size() == 2);
+  CHECK_FALSE(plan.sweeps_drives);
   CHECK(plan.trials[1].folder == "/out/3_2");
   CHECK(plan.trials[1].label == "experiment 3 (v_max 0.4), trial 2");
   CHECK(plan.trials[1].experiment.control.v_max == 0.4);

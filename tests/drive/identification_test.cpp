@@ -164,6 +164,12 @@ hardware:
   REQUIRE(result.exit_code == 0);
   CHECK_THAT(result.err, Catch::Contains("fit the simulated robot: rift sweep"));
 
+  // What the twin's listener is, not the authors'.
+  const simulation::LinkOptions link =
+      experiment::LoadExperiment(folder / "run/sweep.yaml", {}, files::ReadFile).simulation.link;
+  CHECK(link.poll_s == 0.0);
+  CHECK(link.uart_bytes == 512);
+
   const test::ProcessResult fit = test::RunRift(
       {"sweep", folder / "run/sweep.yaml", "--out", folder / "fit", "--write-robot",
        folder / "robot.yaml", "--set", "calibrate.judge_runs=2", "--set",

@@ -51,12 +51,18 @@ TEST_CASE("A ping sets the simulated link without the bytes that its baud adds, 
   // 26 bytes of ten bits there and back at 9600 baud: 27 ms of the 68.
   CHECK_THAT(PingText(ping, options),
              Contains("for the experiment: --set hardware.stopping.delay_s=0.034 --set "
-                      "simulation.link.delay_s=0.020 --set simulation.link.line_loss=0.020\n"));
+                      "simulation.link.delay_s=0.020 --set simulation.link.line_loss=0.020 --set "
+                      "simulation.link.poll_s=0 --set simulation.link.uart_bytes=512 --set "
+                      "simulation.link.watchdog_s=0.300\n"));
   const auto set = nlohmann::json::parse(PingJson(ping, options))["set"];
-  CHECK(set.size() == 3);
+  CHECK(set.size() == 6);
   CHECK(set["hardware.stopping.delay_s"] == 0.034);
   CHECK(set["simulation.link.delay_s"].get<double>() == Approx(0.034 - 130.0 / 9600.0));
   CHECK(set["simulation.link.line_loss"] == 0.02);
+  // It answered, so it has src/firmware.
+  CHECK(set["simulation.link.poll_s"] == 0);
+  CHECK(set["simulation.link.uart_bytes"] == 512);
+  CHECK(set["simulation.link.watchdog_s"] == 0.3);
 }
 
 TEST_CASE("Of a robot that was not asked a ping does not say that it did not answer") {

@@ -21,6 +21,7 @@ TEST_CASE("A simulation as the twin runs it has its line, its camera and its enc
   options.mocap.frame_jitter_s = 0.01;
   options.mocap.host_period_s = 0.05;
   options.mocap.tag_above_m = 0.0;
+  options.mocap.ambiguity.share = 0.5;
   options.encoder.reported = false;
   TwinOptions twin;
   twin.fps = 25.0;
@@ -28,10 +29,12 @@ TEST_CASE("A simulation as the twin runs it has its line, its camera and its enc
   const simulation::SimulationOptions as = AsTwin(options, twin);
   CHECK(as.link.uart_bytes == 512);
   CHECK(as.link.poll_s == 0.0);
+  CHECK(as.link.watchdog_s == 0.3);
   CHECK(as.link.late_share == 0.0);
   CHECK(as.mocap.rate_hz == 25.0);
   CHECK(as.mocap.frame_jitter_s == 0.0);
   CHECK_FALSE(as.mocap.host_period_s);
+  CHECK(as.mocap.ambiguity.share == 0.0);
   // Without its simulated host there is the real one, which finds the tag in a time of its own.
   CHECK(as.mocap.processing_s == options.mocap.processing_s + twin.host_share_s);
   options.mocap.host_period_s.reset();

@@ -19,6 +19,7 @@ class Listener {
  public:
   static constexpr std::uint32_t kWatchdog_ms = 300;
   static constexpr std::uint32_t kPlainAnswer_ms = 200;
+  static constexpr int kReceiveBuffer = 512;  ///< bytes; RECEIVE_BUFFER of src/firmware/main.py
 
   /// Measured by the robot at the time of a poll.
   struct Senses {

@@ -41,10 +41,21 @@ struct TwinOptions {
   }
 };
 
-/// The simulated robot as the twin runs it, for `simulate` to run the same: rift's own listener
-/// (src/firmware) reads its line at once, has 512 bytes of buffer and a watchdog of 0.3 s; the
-/// camera takes options.fps pictures a second. A frame has 11 bytes and three decimals, the
-/// simulated robot's line about 10 bytes and two decimals; that difference stays.
+/// The simulated robot with `rift drive` as its host, which decides on each picture as it comes,
+/// stamps it by its capture, keeps of a tag's two poses the one that fits better, and waits until
+/// the line stands. What is told of another host (configs/hosts/authors.yaml) is taken out; one
+/// with a period of its own tells the time to its driver alone, to which options.host_share_s
+/// comes.
+simulation::SimulationOptions WithRiftHost(simulation::SimulationOptions simulation,
+                                           const TwinOptions& options);
+
+/// The link with rift's own listener (src/firmware) at its end, which reads its line at once and
+/// has 512 bytes of buffer and a watchdog of 0.3 s.
+simulation::LinkOptions WithFirmware(simulation::LinkOptions link);
+
+/// The simulated robot as the twin runs it, for `simulate` to run the same: rift's own host and
+/// listener, and a camera of options.fps pictures a second. A frame has 11 bytes and three
+/// decimals, the simulated robot's line about 10 bytes and two decimals; that difference stays.
 simulation::SimulationOptions AsTwin(simulation::SimulationOptions simulation,
                                      const TwinOptions& options);
 

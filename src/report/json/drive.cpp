@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "rift/hardware/listener.hpp"
 #include "rift/report/json/fields.hpp"
 #include "rift/report/json/stop_text.hpp"
 #include "rift/statistics/descriptive.hpp"
@@ -22,13 +23,16 @@ ordered_json TimeOrNull(double time_s) {
   return time_s < 0.0 ? ordered_json(nullptr) : ordered_json(time_s);
 }
 
-/// Keys that an experiment takes from a link that was measured. The simulated link adds the time of
-/// the bytes itself (simulation.link.baud).
-std::vector<std::pair<std::string, double>> KeysOf(const hardware::PingResult& ping,
-                                                   const hardware::HardwareOptions& options) {
+/// Keys that an experiment takes from a link that was measured, whose robot has src/firmware. The
+/// simulated link adds the time of the bytes itself (simulation.link.baud).
+std::vector<std::pair<std::string, ordered_json>> KeysOf(const hardware::PingResult& ping,
+                                                         const hardware::HardwareOptions& options) {
   return {{"hardware.stopping.delay_s", ping.OneWay_s()},
           {"simulation.link.delay_s", hardware::RadioDelay_s(ping, options.line)},
-          {"simulation.link.line_loss", ping.loss}};
+          {"simulation.link.line_loss", ping.loss},
+          {"simulation.link.poll_s", 0},
+          {"simulation.link.uart_bytes", hardware::Listener::kReceiveBuffer},
+          {"simulation.link.watchdog_s", 1e-3 * hardware::Listener::kWatchdog_ms}};
 }
 
 ordered_json PingBlock(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
@@ -193,7 +197,8 @@ std::string PingText(const hardware::PingResult& ping, const hardware::HardwareO
     text += fmt::format("battery {:.2f} V\n", ping.battery_v);
     text += "for the experiment:";
     for (const auto& [key, value] : KeysOf(ping, options)) {
-      text += fmt::format(" --set {}={:.3f}", key, value);
+      text += value.is_number_integer() ? fmt::format(" --set {}={}", key, value.get<int>())
+                                        : fmt::format(" --set {}={:.3f}", key, value.get<double>());
     }
     text += "\n";
   }

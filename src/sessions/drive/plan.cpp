@@ -12,6 +12,7 @@
 #include "rift/sessions/drive/identification.hpp"
 #include "rift/sessions/sweep/suggested.hpp"
 #include "rift/sweep/falsify/result.hpp"
+#include "rift/twin/options.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -67,7 +68,8 @@ fs::path FolderOf(const fs::path& out, const std::string& folder_template,
       "'{}' is no folder name: name the trials and levels without '/' and a leading '.'", name));
 }
 
-/// The logs of the drives in the place of the truth, the simulator started where they did.
+/// The logs of the drives in the place of the truth, the simulator started where they did and with
+/// the host that drove them.
 Experiment SweepOf(Experiment experiment, const fs::path& out, const std::string& folder_template) {
   experiment.candidate = {};
   experiment.reference.kind = experiment::ReferenceKind::kLogs;
@@ -77,6 +79,7 @@ Experiment SweepOf(Experiment experiment, const fs::path& out, const std::string
   experiment.reference.tag_offset_m = 0.0;
   experiment.start = experiment::Start::kReference;
   experiment.goal = experiment::Goal::kGrid;
+  experiment.simulation = twin::WithRiftHost(std::move(experiment.simulation), experiment.twin);
   return experiment;
 }
 
@@ -135,7 +138,7 @@ SeriesPlan PlanGrid(const Experiment& loaded, const fs::path& out) {
 // What one setting leaves out is as the experiment has it: the floor is laid for it all the same,
 // and a scene command is told.
 SeriesPlan PlanChosen(const Experiment& experiment, const std::vector<ChosenSetting>& settings) {
-  SeriesPlan plan{.sweep = experiment};
+  SeriesPlan plan{.sweep = experiment, .sweeps_drives = false};
   const experiment::Theta nominal = experiment::NominalTheta(experiment);
   experiment::Theta own;
   for (std::size_t i = 0; i < experiment.space.parameters.size(); ++i) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +15,8 @@
 #include "rift/files/folder_lock.hpp"
 #include "rift/report/json/stop_text.hpp"
 #include "rift/sessions/drive/session.hpp"
+#include "rift/twin/options.hpp"
+#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -43,6 +46,30 @@ void CheckSameSeries(const fs::path& file, const Experiment& sweep) {
         "{} is the table of other drives: {} was {} and is {} now; choose another --out",
         file.string(), key, old_values[key].empty() ? "not there" : old_values[key], value));
   }
+}
+
+/// Nothing where the drive does not say.
+std::optional<hardware::Protocol> SpokenIn(const fs::path& drive) {
+  static const nlohmann::json::json_pointer kProtocol("/ping/protocol");
+  if (!fs::exists(drive / "summary.json")) return std::nullopt;
+  const nlohmann::json summary =
+      nlohmann::json::parse(files::ReadFile(drive / "summary.json"), nullptr, false);
+  if (!summary.contains(kProtocol) || !summary[kProtocol].is_string()) return std::nullopt;
+  return yaml::ValueNamed<hardware::Protocol>(summary[kProtocol].get<std::string>());
+}
+
+/// The plan's sweep, with the listener that heard the drives so far where it was made for them: one
+/// that speaks rift's protocol is src/firmware, any other is as the experiment tells.
+Experiment SweepOfDriven(const SeriesPlan& plan) {
+  if (!plan.sweeps_drives) return plan.sweep;
+  std::size_t framed = 0, others = 0;
+  for (const PlannedTrial& trial : plan.trials) {
+    const std::optional<hardware::Protocol> spoken = SpokenIn(trial.folder);
+    if (spoken) ++(*spoken == hardware::Protocol::kFramed ? framed : others);
+  }
+  Experiment sweep = plan.sweep;
+  if (framed > 0 && others == 0) sweep.simulation.link = twin::WithFirmware(sweep.simulation.link);
+  return sweep;
 }
 
 /// An earlier try is evidence as well.
@@ -173,7 +200,12 @@ SeriesEnd DriveAll(const DriveSeries& series, const Console& console,
                   "folder with --out",
                   out.string()));
   CheckSameSeries(out / "sweep.yaml", plan.sweep);
-  files::WriteFile(out / "sweep.yaml", experiment::WriteExperiment(plan.sweep));
+  Experiment sweep;
+  const auto write_sweep = [&] {
+    sweep = SweepOfDriven(plan);
+    files::WriteFile(out / "sweep.yaml", experiment::WriteExperiment(sweep));
+  };
+  write_sweep();
 
   const auto is_done = [](const PlannedTrial& trial) { return fs::exists(trial.folder); };
   const auto count = plan.trials.size();
@@ -187,6 +219,7 @@ SeriesEnd DriveAll(const DriveSeries& series, const Console& console,
     if (is_done(trial)) continue;
     console.say(fmt::format("drive {} of {}: {}", i + 1, count, trial.label));
     SeriesEnd end = driver.Drive(trial);
+    write_sweep();
     // A stop that came when the robot had arrived is one of what follows.
     const bool is_last = std::all_of(plan.trials.begin(), plan.trials.end(), is_done);
     if (driver.StopWasAsked() && !is_last) end = SeriesEnd::kQuit;
@@ -202,6 +235,13 @@ SeriesEnd DriveAll(const DriveSeries& series, const Console& console,
         fmt::format("{} of {} drives did not reach the end; the same command asks "
                     "about them again",
                     left, count));
+  if (const double told_s = plan.sweep.simulation.link.poll_s;
+      sweep.simulation.link.poll_s != told_s) {
+    console.say(fmt::format(
+        "the robot answers as src/firmware does, so sweep.yaml simulates a listener that reads at "
+        "once (simulation.link.poll_s {:g}, {:g} in the experiment)",
+        sweep.simulation.link.poll_s, told_s));
+  }
   then();
   return left > 0 ? SeriesEnd::kLeft : SeriesEnd::kDone;
 }
