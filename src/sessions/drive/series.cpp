@@ -51,9 +51,8 @@ void CheckSameSeries(const fs::path& file, const Experiment& sweep) {
 /// Nothing where the drive does not say.
 std::optional<hardware::Protocol> SpokenIn(const fs::path& drive) {
   static const nlohmann::json::json_pointer kProtocol("/ping/protocol");
-  if (!fs::exists(drive / "summary.json")) return std::nullopt;
-  const nlohmann::json summary =
-      nlohmann::json::parse(files::ReadFile(drive / "summary.json"), nullptr, false);
+  const nlohmann::json summary = nlohmann::json::parse(
+      files::ReadIfThere(drive / "summary.json").value_or(""), nullptr, false);
   if (!summary.contains(kProtocol) || !summary[kProtocol].is_string()) return std::nullopt;
   return yaml::ValueNamed<hardware::Protocol>(summary[kProtocol].get<std::string>());
 }
