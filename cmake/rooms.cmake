@@ -79,7 +79,7 @@ rift_room(view ROOMS control geometry trajectory trial vision/calibration vision
 rift_room(sessions/gap ROOMS experiment files gap odometry sweep/falsify trajectory
   LIBRARIES fmt::fmt)
 rift_room(sessions/drive ROOMS experiment files geometry hardware odometry report/json sessions/sweep
-    sweep/falsify trajectory twin view vision/camera vision/tracking yaml
+    sweep/falsify trajectory twin view vision/camera vision/tracking
   LIBRARIES fmt::fmt PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
 rift_room(sessions/track ROOMS experiment files report/json statistics trajectory view
     vision/calibration vision/camera vision/tracking

@@ -295,4 +295,11 @@ std::string DriveEnding(const std::string& summary_json) {
   return fmt::format("{}: {}", word("outcome"), word("reason"));
 }
 
+std::optional<hardware::Protocol> DriveProtocol(const std::string& summary_json) {
+  static const nlohmann::json::json_pointer kProtocol("/ping/protocol");
+  const auto summary = nlohmann::json::parse(summary_json, nullptr, /*allow_exceptions=*/false);
+  if (!summary.contains(kProtocol) || !summary[kProtocol].is_string()) return std::nullopt;
+  return yaml::ValueNamed<hardware::Protocol>(summary[kProtocol].get<std::string>());
+}
+
 }  // namespace rift::report

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -13,10 +12,10 @@
 #include "rift/experiment/path_template.hpp"
 #include "rift/files/files.hpp"
 #include "rift/files/folder_lock.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/report/json/stop_text.hpp"
 #include "rift/sessions/drive/session.hpp"
 #include "rift/twin/options.hpp"
-#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -48,22 +47,14 @@ void CheckSameSeries(const fs::path& file, const Experiment& sweep) {
   }
 }
 
-/// Nothing where the drive does not say.
-std::optional<hardware::Protocol> SpokenIn(const fs::path& drive) {
-  static const nlohmann::json::json_pointer kProtocol("/ping/protocol");
-  const nlohmann::json summary = nlohmann::json::parse(
-      files::ReadIfThere(drive / "summary.json").value_or(""), nullptr, false);
-  if (!summary.contains(kProtocol) || !summary[kProtocol].is_string()) return std::nullopt;
-  return yaml::ValueNamed<hardware::Protocol>(summary[kProtocol].get<std::string>());
-}
-
 /// The plan's sweep, with the listener that heard the drives so far where it was made for them: one
 /// that speaks rift's protocol is src/firmware, any other is as the experiment tells.
 Experiment SweepOfDriven(const SeriesPlan& plan) {
   if (!plan.sweeps_drives) return plan.sweep;
   std::size_t framed = 0, others = 0;
   for (const PlannedTrial& trial : plan.trials) {
-    const std::optional<hardware::Protocol> spoken = SpokenIn(trial.folder);
+    const std::string summary = files::ReadIfThere(trial.folder / "summary.json").value_or("");
+    const std::optional<hardware::Protocol> spoken = report::DriveProtocol(summary);
     if (spoken) ++(*spoken == hardware::Protocol::kFramed ? framed : others);
   }
   Experiment sweep = plan.sweep;

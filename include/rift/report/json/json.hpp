@@ -60,6 +60,8 @@ std::string InterruptedDriveJson(const experiment::Experiment& experiment);
 std::string DriveText(const experiment::Experiment& experiment, const hardware::DriveRun& run);
 /// How a drive ended, in one line for people, of its summary.json.
 std::string DriveEnding(const std::string& summary_json);
+/// What the robot of a drive spoke, of its summary.json; nothing where that does not say.
+std::optional<hardware::Protocol> DriveProtocol(const std::string& summary_json);
 
 /// One row a pose: when it went through each stage. Cells of stages never reached are empty.
 std::string StagesCsv(const hardware::DriveRecord& evidence);
