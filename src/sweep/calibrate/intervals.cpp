@@ -29,47 +29,46 @@ struct Pool {
   std::vector<Eigen::VectorXd> scatter;
 };
 
-/// A prior where the estimate stands. What it is known by could have come out otherwise, as the
-/// logs could: a parameter that no log tells scatters as its prior does.
-struct PriorAt {
-  Eigen::VectorXd weight, gradient;
-
-  Eigen::VectorXd Drawn(std::mt19937_64& generator) const {
-    Eigen::VectorXd scatter = Eigen::VectorXd::Zero(weight.size());
-    for (Eigen::Index k = 0; k < weight.size(); ++k) {
-      if (weight[k] == 0.0) continue;
-      const double share = (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
-      scatter[k] = std::sqrt(weight[k]) * statistics::NormalQuantile(share);
-    }
-    return scatter;
-  }
+/// How many logs a draw holds.
+struct Counts {
+  size_t real = 0, simulated = 0;
 };
 
-/// Estimates from as many logs drawn anew out of `real`, the simulated logs that a correction came
-/// from drawn anew out of `simulated` as well; one row each.
-Eigen::MatrixXd Draws(const Linearised& at, const Linearised& corrected_by, const Pool& real,
-                      const Pool& simulated, const PriorAt& prior, int resamples,
+/// A gradient of the prior. What it is known by could have come out otherwise, as the logs could: a
+/// parameter that no log tells scatters as its prior does.
+Eigen::VectorXd DrawnPrior(const Eigen::VectorXd& weight, std::mt19937_64& generator) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(weight.size());
+  for (Eigen::Index k = 0; k < weight.size(); ++k) {
+    if (weight[k] == 0.0) continue;
+    const double share = (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
+    gradient[k] = std::sqrt(weight[k]) * statistics::NormalQuantile(share);
+  }
+  return gradient;
+}
+
+/// Estimates about that of the fit, one row each, from as many logs drawn anew out of `real`, the
+/// simulated logs that a correction came from drawn anew out of `simulated` as well. Gradients
+/// alone are drawn, and every draw has the Hessian of all logs (score bootstrap: Kline and Santos
+/// 2012): of a parameter that few logs tell some draws hold none of them, and would say anything.
+Eigen::MatrixXd Draws(const Counts& counts, const Pool& real, const Pool& simulated,
+                      const Eigen::VectorXd& prior_weight, int resamples,
                       std::mt19937_64& generator) {
-  const size_t logs = at.gradients.size(), made = corrected_by.gradients.size();
-  const Eigen::Index n = at.gradients.front().size();
-  const double share = made > 0 ? static_cast<double>(logs) / static_cast<double>(made) : 0.0;
-  Eigen::VectorXd mean = Sum(at.gradients);
-  if (made > 0) mean -= share * Sum(corrected_by.gradients);
-  mean += prior.gradient;
-  Eigen::MatrixXd draws(resamples, n);
+  const auto logs = static_cast<double>(counts.real);
+  Eigen::MatrixXd hessian = logs / static_cast<double>(real.hessians.size()) * Sum(real.hessians);
+  hessian.diagonal() += prior_weight;
+  hessian.diagonal().array() += RidgeOf(hessian);
+  const auto solver = hessian.ldlt();
+  Eigen::MatrixXd draws(resamples, prior_weight.size());
   for (Eigen::Index row = 0; row < draws.rows(); ++row) {
-    Eigen::MatrixXd hessian = prior.weight.asDiagonal();
-    Eigen::VectorXd gradient = mean + prior.Drawn(generator);
-    for (size_t i = 0; i < logs; ++i) {
-      const size_t drawn = generator() % real.hessians.size();
-      hessian += real.hessians[drawn];
-      gradient += real.scatter[drawn];
+    Eigen::VectorXd gradient = DrawnPrior(prior_weight, generator);
+    for (size_t i = 0; i < counts.real; ++i) {
+      gradient += real.scatter[generator() % real.scatter.size()];
     }
-    for (size_t i = 0; i < made; ++i) {
-      gradient -= share * simulated.scatter[generator() % simulated.scatter.size()];
+    for (size_t i = 0; i < counts.simulated; ++i) {
+      gradient -= logs / static_cast<double>(counts.simulated) *
+                  simulated.scatter[generator() % simulated.scatter.size()];
     }
-    hessian.diagonal().array() += RidgeOf(hessian);
-    draws.row(row) = -hessian.ldlt().solve(gradient);
+    draws.row(row) = -solver.solve(gradient);
   }
   return draws;
 }
@@ -80,15 +79,12 @@ struct Scatter {
   Eigen::MatrixXd correlation;
 };
 
-/// From the central draws alone: one that happens to hold no log of a surface tells nothing of its
-/// friction and may say anything.
-Scatter ScatterOf(Eigen::MatrixXd draws, double confidence) {
+Scatter ScatterOf(const Eigen::MatrixXd& draws, double confidence) {
   Scatter scatter{.reach = Eigen::VectorXd(draws.cols())};
   for (Eigen::Index k = 0; k < draws.cols(); ++k) {
-    const std::vector<double> values(draws.col(k).begin(), draws.col(k).end());
-    const auto [low, high] = statistics::CentralInterval(values, confidence);
+    const auto [low, high] =
+        statistics::CentralInterval({draws.col(k).begin(), draws.col(k).end()}, confidence);
     scatter.reach[k] = 0.5 * (high - low);
-    draws.col(k) = draws.col(k).cwiseMax(low).cwiseMin(high);
   }
   const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
   const Eigen::MatrixXd covariance = centred.transpose() * centred;
@@ -104,22 +100,53 @@ Scatter ScatterOf(Eigen::MatrixXd draws, double confidence) {
 /// much less than the next dozen would, and simulated ones do not know what the model lacks. The
 /// wider of the two, parameter by parameter, with the correlations of the larger pool.
 Scatter ScatterOf(const Linearised& at, const std::vector<Linearised>& simulated,
-                  const PriorAt& prior, const CalibrationOptions& options,
+                  const Eigen::VectorXd& prior_weight, const CalibrationOptions& options,
                   std::mt19937_64& generator) {
-  const auto from = [&](const Linearised& by, const Pool& real, const Pool& made) {
-    return ScatterOf(Draws(at, by, real, made, prior, options.resamples, generator),
+  Counts counts{.real = at.gradients.size()};
+  if (!simulated.empty()) counts.simulated = simulated.back().gradients.size();
+  const auto from = [&](const Pool& real, const Pool& made) {
+    return ScatterOf(Draws(counts, real, made, prior_weight, options.resamples, generator),
                      options.confidence);
   };
   Pool real;
   real.Add(at);
-  if (simulated.empty()) return from(Linearised{}, real, Pool{});
+  if (simulated.empty()) return from(real, Pool{});
   Pool made, all = real;
   made.Add(simulated.back());
   for (const Linearised& set : simulated) all.Add(set);
-  const Scatter apart = from(simulated.back(), real, made);
-  Scatter together = from(simulated.back(), all, all);
+  const Scatter apart = from(real, made);
+  Scatter together = from(all, all);
   together.reach = together.reach.cwiseMax(apart.reach);
   return together;
+}
+
+/// Of the scatter of each parameter (Satterthwaite; Bell and McCaffrey 2002). Few logs tell their
+/// own scatter badly, and those of a parameter are fewer where some tell little of it; how far a
+/// prior scatters is known.
+Eigen::VectorXd DegreesOfFreedom(const Linearised& at, const Eigen::VectorXd& prior_weight) {
+  Eigen::MatrixXd hessian = Sum(at.hessians);
+  hessian.diagonal() += prior_weight;
+  hessian.diagonal().array() += RidgeOf(hessian);
+  const Eigen::MatrixXd inverse =
+      hessian.ldlt().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.cols()));
+  const auto variance = [&](const Eigen::MatrixXd& told) -> Eigen::VectorXd {
+    return (inverse * told * inverse).diagonal();
+  };
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(prior_weight.size()), squares = sum;
+  for (const Eigen::MatrixXd& log : at.hessians) {
+    const Eigen::VectorXd of_log = variance(log);
+    sum += of_log;
+    squares += of_log.cwiseAbs2();
+  }
+  const Eigen::VectorXd all = sum + variance(prior_weight.asDiagonal());
+  constexpr double kMany = 1e6;  // no log tells it: the normal distribution
+  Eigen::VectorXd degrees = Eigen::VectorXd::Constant(prior_weight.size(), kMany);
+  for (Eigen::Index k = 0; k < degrees.size(); ++k) {
+    if (sum[k] <= 0.0) continue;
+    const double of_logs = std::max(1.0, sum[k] * sum[k] / squares[k] - 1.0);
+    degrees[k] = std::min(kMany, of_logs * std::pow(all[k] / sum[k], 2));
+  }
+  return degrees;
 }
 
 }  // namespace
@@ -128,20 +155,17 @@ void Judge(const std::vector<experiment::FreeParameter>& parameters,
            const CalibrationOptions& options, const Eigen::VectorXd& estimate, const Linearised& at,
            const std::vector<Linearised>& simulated, const Prior& prior, std::mt19937_64& generator,
            Calibration& result) {
-  const auto logs = static_cast<double>(at.gradients.size());
-  const Scatter scatter =
-      ScatterOf(at, simulated, {prior.weight, prior.GradientAt(estimate)}, options, generator);
-  // Few logs tell their own scatter badly.
+  const Scatter scatter = ScatterOf(at, simulated, prior.weight, options, generator);
+  const Eigen::VectorXd degrees = DegreesOfFreedom(at, prior.weight);
   const double upper = 0.5 + 0.5 * options.confidence;
-  const double few_logs = statistics::StudentQuantile(std::max(1.0, logs - 1.0), upper) /
-                          statistics::NormalQuantile(upper);
   const std::vector<double> values = ValuesAt(parameters, estimate);
   const Eigen::Index n = estimate.size();
   std::vector<bool> has_effect;
   for (Eigen::Index k = 0; k < n; ++k) {
     const experiment::FreeParameter& p = parameters[static_cast<size_t>(k)];
     const double value = values[static_cast<size_t>(k)];
-    const double reach = few_logs * scatter.reach[k];
+    const double reach = scatter.reach[k] * statistics::StudentQuantile(degrees[k], upper) /
+                         statistics::NormalQuantile(upper);
     double effect = 0.0;
     for (const Eigen::MatrixXd& hessian : at.hessians) effect += hessian(k, k);
     has_effect.push_back(effect > 0.0);

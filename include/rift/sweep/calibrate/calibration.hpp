@@ -93,8 +93,10 @@ std::vector<StartAgreement> AgreementOf(const std::vector<Calibration>& fits);
 /// speed, loop delay and steering gain over the scatter of these among the logs. Whole paths have
 /// no say: of a delayed bang-bang loop they are chaotic. A prior adds the square of the distance
 /// from its mean over its standard deviation, as one more error. Intervals and correlations:
-/// bootstrap over logs, each draw fitted by one Gauss-Newton step; over the logs alone and over
-/// logs and the simulated ones of the corrections together, whichever is wider. With
+/// score bootstrap over logs (Kline and Santos 2012: each draw a Gauss-Newton step along its own
+/// gradients with the Hessian of all logs), over the logs alone and over logs and the simulated
+/// ones of the corrections together, whichever is wider, by Student's quantile with the degrees of
+/// freedom of the logs that tell a parameter (Bell and McCaffrey 2002). With
 /// options.features.rounds the estimate then goes on to where whole drives have the features of the
 /// logs. Throws std::invalid_argument for no logs, no parameters or a start out of range. `threads`
 /// evaluate logs at once and change no result. The fit asks for no twin at values that are not
