@@ -74,6 +74,20 @@ TEST_CASE("Of a robot that was not asked a ping does not say that it did not ans
   CHECK_THAT(PingText(ping, options), !Contains("answer within") && Contains("cannot be asked"));
 }
 
+TEST_CASE("A summary tells outcome and protocol of its drive, and nothing that it does not know") {
+  hardware::DriveRun run;
+  run.trial.outcome = trial::Outcome::kTimedOut;
+  run.ping.protocol = hardware::Protocol::kFramed;
+  const std::string summary = DriveJson({}, run);
+  CHECK(DriveOutcome(summary) == trial::Outcome::kTimedOut);
+  CHECK(DriveProtocol(summary) == hardware::Protocol::kFramed);
+  for (const std::string& other : {InterruptedDriveJson({}), std::string("[]"), std::string("{")}) {
+    CAPTURE(other);
+    CHECK_FALSE(DriveOutcome(other));
+    CHECK_FALSE(DriveProtocol(other));
+  }
+}
+
 TEST_CASE("A waypoint without a name that was reached is told by its place in the task") {
   sweep::SimulatedRun run;
   run.result.visits = {{"turn", 1.25, 0.0}, {"", 2.5, 0.0}, {"", {}, 0.3}};

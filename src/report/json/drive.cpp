@@ -177,6 +177,15 @@ std::string PredictedRobotText(const experiment::Experiment& experiment) {
   return text;
 }
 
+/// The value named at a place of the document; nothing where there is none.
+template <typename Enum>
+std::optional<Enum> NamedIn(const std::string& json, const char* place) {
+  const nlohmann::json::json_pointer pointer(place);
+  const auto document = nlohmann::json::parse(json, nullptr, /*allow_exceptions=*/false);
+  if (!document.contains(pointer) || !document[pointer].is_string()) return std::nullopt;
+  return yaml::ValueNamed<Enum>(document[pointer].template get<std::string>());
+}
+
 }  // namespace
 
 std::string PingJson(const hardware::PingResult& ping, const hardware::HardwareOptions& options) {
@@ -295,11 +304,12 @@ std::string DriveEnding(const std::string& summary_json) {
   return fmt::format("{}: {}", word("outcome"), word("reason"));
 }
 
+std::optional<trial::Outcome> DriveOutcome(const std::string& summary_json) {
+  return NamedIn<trial::Outcome>(summary_json, "/outcome");
+}
+
 std::optional<hardware::Protocol> DriveProtocol(const std::string& summary_json) {
-  static const nlohmann::json::json_pointer kProtocol("/ping/protocol");
-  const auto summary = nlohmann::json::parse(summary_json, nullptr, /*allow_exceptions=*/false);
-  if (!summary.contains(kProtocol) || !summary[kProtocol].is_string()) return std::nullopt;
-  return yaml::ValueNamed<hardware::Protocol>(summary[kProtocol].get<std::string>());
+  return NamedIn<hardware::Protocol>(summary_json, "/ping/protocol");
 }
 
 }  // namespace rift::report

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "rift/files/files.hpp"
+#include "rift/report/json/json.hpp"
 #include "rift/sweep/falsify/settings.hpp"
-#include "rift/yaml/enum_name.hpp"
 
 namespace rift::sessions {
 namespace {
@@ -24,15 +23,11 @@ int CountDrives(const fs::path& sweep, int number) {
 
 trial::Outcome OutcomeOf(const fs::path& drive) {
   const fs::path file = drive / "summary.json";
-  const nlohmann::json summary = nlohmann::json::parse(files::ReadFile(file), nullptr, false);
-  const std::string outcome =
-      summary.is_object() && summary.contains("outcome") && summary["outcome"].is_string()
-          ? summary["outcome"].get<std::string>()
-          : "";
-  if (const auto known = yaml::ValueNamed<trial::Outcome>(outcome)) return *known;
-  throw std::invalid_argument(fmt::format(
-      "{}: outcome is '{}': a drive that was not ended properly cannot be judged; move {} away",
-      file.string(), outcome, drive.string()));
+  const std::string summary = files::ReadFile(file);
+  if (const auto outcome = report::DriveOutcome(summary)) return *outcome;
+  throw std::invalid_argument(
+      fmt::format("{}: {}: a drive that was not ended properly cannot be judged; move {} away",
+                  file.string(), report::DriveEnding(summary), drive.string()));
 }
 
 /// The whole setting of a suggested experiment: what a person does not set is as the experiment

@@ -60,7 +60,9 @@ std::string InterruptedDriveJson(const experiment::Experiment& experiment);
 std::string DriveText(const experiment::Experiment& experiment, const hardware::DriveRun& run);
 /// How a drive ended, in one line for people, of its summary.json.
 std::string DriveEnding(const std::string& summary_json);
-/// What the robot of a drive spoke, of its summary.json; nothing where that does not say.
+/// What its summary.json says of a drive; nothing where it does not, as of an interrupted drive.
+std::optional<trial::Outcome> DriveOutcome(const std::string& summary_json);
+/// What the robot spoke.
 std::optional<hardware::Protocol> DriveProtocol(const std::string& summary_json);
 
 /// One row a pose: when it went through each stage. Cells of stages never reached are empty.
